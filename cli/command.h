@@ -20,14 +20,14 @@ namespace frontmost::cli {
 struct Command {
   std::string_view name;
   unsigned bit;               ///< bit in Option::commands; 0: no options
-  std::string_view argument;  ///< as usage lines show it; "..." at its end: several may be given; in [ ]: it may be
-                              ///< left out; after a blank a second one, an object of the model
+  std::string_view argument;  ///< as usage lines show it; with "..." at its end, several may be given; in [ ], it may
+                              ///< be left out; a second argument behind a blank is an object of the model
   std::string_view summary;
   std::string_view details;
-  std::string_view examples;  ///< one a line: command, two blanks or more, its effect
+  std::string_view examples;  ///< one per line: the command, two or more blanks, and its effect
   int (*run)(const Settings&);
 
-  /// The argument's name without further signs.
+  /// Returns the argument's name, up to "..." or to a second argument.
   [[nodiscard]] std::string_view argument_name() const { return argument.substr(0, argument.find_first_of(". ")); }
   [[nodiscard]] bool is_argument_needed() const { return !argument.empty() && argument.front() != '['; }
   [[nodiscard]] bool takes_several() const { return argument.ends_with("..."); }
@@ -35,7 +35,7 @@ struct Command {
 };
 
 [[nodiscard]] std::span<const Command> commands();
-/// Null if no command has that name.
+/// Returns the command of that name, or null if there is none.
 [[nodiscard]] const Command* find_command(std::string_view name);
 
 int run_render(const Settings& settings);
@@ -54,15 +54,15 @@ int run_batch_merge(const Settings& settings);
 /// \throws UsageError
 [[nodiscard]] Settings parse_command_line(const Command& command, std::span<const char* const> words);
 
-/// The rest of a usage line behind the command's name, as in "MODEL... [options]". The argument stands between `before`
-/// and `after`.
+/// Returns the rest of a usage line, behind the command's name, as in "MODEL... [options]". The argument is put between
+/// `before` and `after`.
 [[nodiscard]] std::string usage_of(const Command& command, std::string_view before = "", std::string_view after = "");
 
-/// Texts generated from the tables.
+/// Return texts that are generated from the tables.
 [[nodiscard]] std::string help_overview();
 [[nodiscard]] std::string help_for(const Command& command);
 [[nodiscard]] std::string man_page();
-/// A script for bash, zsh or fish. \throws UsageError for other shells.
+/// Returns a script for bash, zsh or fish. \throws UsageError for other shells.
 [[nodiscard]] std::string completion_script(std::string_view shell);
 
 }  // namespace frontmost::cli

@@ -29,7 +29,7 @@ void declare(CLI::App& app, GivenOption& found) {
   if (option.is_switch()) {
     app.add_flag(names, found.is_set)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   } else {
-    // One value at a time, whatever it looks like: -1,2,3 is a vector, and - is a file.
+    // Each flag has one value, whatever the value looks like: -1,2,3 is a vector, and - is a file.
     app.add_option(names, found.texts)->expected(1)->take_all()->allow_extra_args(false);
   }
 }
@@ -55,10 +55,10 @@ std::vector<std::string_view> known_flags(const Command& command) {
                                                : fmt::format("; did you mean --{}?", nearest)));
 }
 
-/// Words that belong to no option: further models, if the command takes several.
+/// Takes the words that belong to no option. They are further models, if the command takes several.
 void take_leftovers(const Command& command, const std::vector<std::string>& words, Settings& settings) {
   for (const std::string& word : words) {
-    if (word == "--") continue;  // its work is done
+    if (word == "--") continue;  // it has ended the options
     if (word.size() > 1 && word[0] == '-') complain_of_unknown(command, word);
     if (command.argument.empty()) throw UsageError(fmt::format("unexpected argument '{}'", word));
     if (command.takes_object())
@@ -71,7 +71,7 @@ void take_leftovers(const Command& command, const std::vector<std::string>& word
   }
 }
 
-/// Message for an option without value, as in "--hidden needs a value: none, dashed or thin".
+/// Returns the message for an option without value, as in "--hidden needs a value: none, dashed or thin".
 std::string value_needed(const Option& option) {
   std::vector<std::string_view> words = split(option.choices(), '|');
   if (option.choices().empty()) return fmt::format("--{} needs a value", option.name);
@@ -80,7 +80,7 @@ std::string value_needed(const Option& option) {
   return fmt::format("--{} needs a value: {} or {}", option.name, fmt::join(words, ", "), last);
 }
 
-/// "--output --hash" lacks a file name. A file of that name can still be written as ./--hash.
+/// Refuses a flag in the place of a value, as in "--output --hash". A file of that name can be written as ./--hash.
 void refuse_flag_as_value(const Command& command, const GivenOption& found) {
   for (const std::string& text : found.texts) {
     if (text.substr(0, 2) != "--") continue;
@@ -132,7 +132,8 @@ Settings parse_command_line(const Command& command, std::span<const char* const>
   }
   if (command.takes_object() && object.empty())
     throw UsageError(
-        fmt::format("no OBJECT given: its name or its number, as frontmost report {} lists them", settings.model));
+        fmt::format("no OBJECT given; give the name or the number of an object, as frontmost report {} lists them",
+                    settings.model));
   return settings;
 }
 

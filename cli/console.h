@@ -19,14 +19,14 @@ void print(std::string_view text);
 /// Writes one line "frontmost: ..." to standard error, escaped as printable_text() does.
 void complain(std::string_view text);
 
-/// Columns and rows of the terminal at standard output; empty if it is no terminal.
+/// Returns the columns and rows of the terminal at standard output, or nothing if it is no terminal.
 [[nodiscard]] std::optional<glm::ivec2> output_terminal();
 [[nodiscard]] bool error_is_terminal();
 
-/// The number with a comma before every three digits: 1,234,567.
+/// Returns the number with a comma before every three digits: 1,234,567.
 [[nodiscard]] std::string grouped(std::uint64_t number);
 
-/// A name from a file for a terminal: escaped as printable_text() does, or "(no name)".
+/// Returns a name from a file in a form for terminals: escaped as printable_text() does, or "(no name)".
 [[nodiscard]] std::string printable_name(std::string_view name);
 
 /// Progress of long work. Shows nothing in the first half second, and nothing at all if standard error is no terminal.
@@ -37,11 +37,12 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// For Execution; valid during this object's lifetime. Its `cancelled` reports Ctrl-C and --timeout.
+  /// Returns the watch for an Execution, valid during this object's lifetime. Its `cancelled` reports Ctrl-C and
+  /// --timeout.
   [[nodiscard]] const Watch* watch() const { return &watch_; }
   /// Sets the text before the stage, such as "view 3 of 20: ".
   void set_prefix(std::string prefix);
-  /// Removes the line. Call before something else is printed.
+  /// Removes the line of progress. Must be called before something else is printed.
   void clear();
 
  private:

@@ -96,8 +96,8 @@ void catch_interruptions(std::optional<double> timeout_seconds) {
     sigaction(signal, nullptr, &before);
     if (before.sa_handler != SIG_IGN) sigaction(signal, &action, nullptr);
   }
-  // A reader of the output that goes away causes a failed write with a message instead of a silent death. So does a
-  // file that grows beyond the limit of `ulimit -f`.
+  // If the reader of the output goes away, a write fails with a message, and the program does not die silently. The
+  // same holds for a file that grows beyond the limit of `ulimit -f`.
   for (const int signal : {SIGPIPE, SIGXFSZ}) ::signal(signal, SIG_IGN);
   if (timeout_seconds) {
     sigaction(SIGALRM, &action, nullptr);

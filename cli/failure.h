@@ -27,14 +27,14 @@ class UsageError : public std::runtime_error {
 /// greater than 0".
 [[nodiscard]] bool names_culprit(const Error& error);
 
-/// The error with its file filled in if it names none: the pose file, or the model.
+/// Returns the error. If it names no file, the pose file or the model is filled in.
 [[nodiscard]] Error with_culprit(const Error& error, const Settings& settings);
 
 /// Catches SIGINT, SIGTERM and SIGHUP, and starts the timeout. From then on, a file that grows too large and a reader
 /// that goes away cause failed writes. Call once.
 void catch_interruptions(std::optional<double> timeout_seconds);
 
-/// Interruptions wait for the library to clean up during this object's lifetime.
+/// During this object's lifetime, an interruption lets the library clean up before the program ends.
 class WritingFiles {
  public:
   WritingFiles();
@@ -44,7 +44,7 @@ class WritingFiles {
   WritingFiles& operator=(const WritingFiles&) = delete;
 };
 
-/// Marks that the program waits for other ranks; --timeout mentions it.
+/// Marks that the program waits for other ranks, which the message of --timeout then mentions.
 class WaitingForRanks {
  public:
   WaitingForRanks();
@@ -53,13 +53,13 @@ class WaitingForRanks {
   WaitingForRanks& operator=(const WaitingForRanks&) = delete;
 };
 
-/// Tells whether a line of progress is on the terminal, which has to be cleared first.
+/// Tells whether a line of progress is on the terminal. If so, an interruption clears the line first.
 void clear_line_when_interrupted(bool shown);
 
 [[nodiscard]] bool is_interrupted();
-/// \throws Error cancelled
+/// Checks for an interruption. \throws Error cancelled if there was one.
 void stop_if_interrupted();
-/// Prints the reason to standard error if there is one to tell. \returns the exit status.
+/// Prints the reason of an interruption to standard error, if there is one to tell. \returns the exit status.
 int report_interruption();
 
 }  // namespace frontmost::cli

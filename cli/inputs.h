@@ -21,7 +21,7 @@ class InputFiles {
   /// Adds a file. `is` describes an output of the same name: "is the model itself". A file that is missing or not
   /// ordinary cannot be replaced and is ignored.
   void add(const std::filesystem::path& path, const std::string& is);
-  /// \throws UsageError naming the first output that equals one of the files.
+  /// Compares outputs with these files. \throws UsageError naming the first output that equals one of the files.
   void refuse_outputs(const std::vector<std::string>& outputs) const;
 
  private:
@@ -30,14 +30,14 @@ class InputFiles {
 
 /// Whether the environment is a file, not a built-in one.
 [[nodiscard]] bool is_environment_file(const LightSettings& light);
-/// All files that the settings name. \throws UsageError if two of them are standard input.
+/// Returns all files that the settings name. \throws UsageError if two of them are standard input.
 [[nodiscard]] InputFiles input_files(const Settings& settings);
 
-/// Checks files that a model uses, known after it was read: material libraries, buffers and textures. \throws
-/// UsageError if an output would replace one of them.
+/// Checks the files that a model uses, such as material libraries, buffers and textures. They are known after the model
+/// was read. \throws UsageError if an output would replace one of them.
 void refuse_outputs_beside(const std::vector<std::filesystem::path>& used, const std::vector<std::string>& outputs);
 
-/// Execution with the requested threads and instruction set, which reports interruptions.
+/// Returns an Execution with the requested threads and instruction set, which reports interruptions.
 [[nodiscard]] Execution execution_for(const RunSettings& settings, const Progress& progress);
 /// Loads the model and prints the reader's warnings to standard error unless quiet: a few, then the number of others.
 /// \throws UsageError if one of `outputs` would replace a file that the model uses, such as a texture.
@@ -47,8 +47,8 @@ void refuse_outputs_beside(const std::vector<std::filesystem::path>& used, const
 void show_warnings(const std::vector<std::string>& warnings, const RunSettings& run, Progress& progress);
 /// Prints framing_warning() and up_warning(): objects reach out of the picture, or the model lies on its back.
 void show_framing_warning(const Settings& settings, const Surfaces& surfaces, Progress& progress);
-/// The scene with its curved meshes cut into triangles for `view`, as --tessellation-error says; empty without that
-/// option.
+/// Returns the scene with its curved meshes cut into triangles for `view`, with the error that --tessellation-error
+/// allows. Returns nothing without that option.
 [[nodiscard]] std::optional<Scene> tessellated(const Scene& scene, const ViewSettings& settings, const View& view);
 
 }  // namespace frontmost::cli

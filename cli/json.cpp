@@ -13,7 +13,8 @@
 namespace frontmost::cli {
 namespace {
 
-/// Only string values may hold invalid UTF-8; keys are this program's own.
+/// Returns the text of a value without elements. Only string values may hold invalid UTF-8; keys are this program's
+/// own.
 std::string scalar(const Json& json) {
   if (json.is_string()) return Json(utf8_text(json.get_ref<const std::string&>())).dump();
   return json.dump();
@@ -39,9 +40,10 @@ void append(const Json& json, std::size_t indent, std::string& text) {
   }
 }
 
-constexpr std::string_view list_indent = "    ";  // of an element: one level for the object, one for the list
+constexpr std::string_view list_indent = "    ";  // indentation of an element: one level for the object, and one for
+                                                  // the list
 
-/// dump() without the line break at its end.
+/// Returns the text of dump() without the line break at its end.
 std::string text_of(const Json& json) {
   std::string text = dump(json);
   text.pop_back();

@@ -21,7 +21,7 @@ template <int n, class T>
   return result;
 }
 
-/// A matrix as four rows of four, as written on paper.
+/// Returns a matrix as four rows of four numbers, as on paper.
 [[nodiscard]] inline Json to_json(const glm::dmat4& matrix) {
   Json rows = Json::array();
   for (int row = 0; row < 4; ++row) {
@@ -32,24 +32,24 @@ template <int n, class T>
   return rows;
 }
 
-/// The value, or null if it is infinite, since JSON has no infinity (an infinite far plane).
+/// Returns the value, or null if it is infinite (as a far plane may be), because JSON has no infinity.
 [[nodiscard]] inline Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-/// The least, median and greatest of several times. Precondition: not empty.
+/// Returns the least, median and greatest of several times. Precondition: not empty.
 [[nodiscard]] Json times_json(const std::vector<double>& times);
 
-/// \returns the text with a line break at the end. Strings are converted by utf8_text().
+/// Returns the text with a line break at its end. Strings are converted by utf8_text().
 [[nodiscard]] std::string dump(const Json& json);
 
 /// Prints an object with a long list, one element at a time. The text equals dump() of the whole, which is never in
 /// memory.
 class JsonListPrinter {
  public:
-  /// `before` holds the members before the list, at least one.
+  /// Begins an object. `before` holds the members before the list, at least one.
   JsonListPrinter(const Json& before, const std::string& list);
   /// Adds an element. The text is printed in large pieces.
   void add(const Json& element);
-  /// `after` holds the members behind the list, at least one. Prints the rest.
+  /// Ends the object and prints the rest. `after` holds the members behind the list, at least one.
   void finish(const Json& after);
 
  private:

@@ -68,24 +68,25 @@ struct Given {
 
   [[nodiscard]] double number(const NumberLimits& range = any_number) const { return parse_number(text, range); }
   [[nodiscard]] int integer(const NumberLimits& range) const { return parse_integer(text, range); }
-  /// Precondition: the words in the table are in the order of the enumerators.
+  /// Returns the enumerator of the given word. Precondition: the words in the table are in the order of the
+  /// enumerators.
   template <class Enum>
   [[nodiscard]] Enum choice() const {
     return static_cast<Enum>(parse_choice(text, choices));
   }
   [[nodiscard]] std::string string() const { return std::string(text); }
-  /// \throws UsageError if the text is empty.
+  /// Returns the text as a file name. \throws UsageError if the text is empty.
   [[nodiscard]] std::string file_name() const;
 };
 
 struct Option {
   std::string_view name;   ///< without dashes; also the key in a batch file
-  char letter;             ///< "-o"; 0: none
+  char letter;             ///< letter of the short form, as in "-o"; 0: none
   std::string_view value;  ///< the value: "FILE", "X,Y,Z", or "a|b|c" for one of these; empty: a switch
   std::string_view help;
   Group group;
   unsigned commands;
-  void (*apply)(Settings&, const Given&);  ///< throws UsageError for invalid values
+  void (*apply)(Settings&, const Given&);  ///< applies a given value; throws UsageError if it is invalid
 
   [[nodiscard]] bool is_switch() const { return value.empty(); }
   [[nodiscard]] bool is_file() const { return value.find("FILE") != std::string_view::npos; }
@@ -94,8 +95,8 @@ struct Option {
   }
 };
 
-/// The tables in the order of the help. Each is in the file of its command, or in a file of its own if several commands
-/// share it.
+/// The tables in the order of the help. Each table is in the file of its command, or in a file of its own if several
+/// commands share it.
 [[nodiscard]] std::span<const Option> view_option_table();
 [[nodiscard]] std::span<const Option> depth_option_table();
 [[nodiscard]] std::span<const Option> precision_option_table();
@@ -122,7 +123,7 @@ void for_each_option(const Visit& visit) {
 
 /// Applies one option and notes in the settings that it was given. \throws UsageError as Option::apply does.
 void apply_as_given(const Option& option, std::string_view text, Settings& settings);
-/// Applies one option as above; errors begin with the option's name.
+/// Applies one option like apply_as_given(). Errors begin with the option's name.
 void apply(const Option& option, std::string_view text, Settings& settings);
 
 }  // namespace frontmost::cli

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// File names, checked as far as possible before anything is drawn: a run of an hour must not end in "no such folder".
-// Suffixes give the format; --format serves names without one. Two kinds in one file become channels of an OpenEXR
-// file.
+// File names are checked as far as possible before anything is drawn, because a run of an hour must not end in "no such
+// folder". Suffixes give the format; --format serves names without a suffix. Two kinds in one file become channels of
+// an OpenEXR file.
 #include "cli/outputs.h"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ constexpr std::string_view kind_names[] = {"picture", "deep",          "depth", 
 constexpr std::string_view format_names[] = {"png", "exr", "pfm", "npy", "jpg", "webp"};
 constexpr std::string_view given_formats = "png, exr, pfm, npy, jpg or webp";
 
-/// The suffix in lower case without its dot; "jpeg" becomes "jpg".
+/// Returns the suffix in lower case without its dot. "jpeg" becomes "jpg".
 std::string suffix_of(const std::string& path) {
   std::string suffix = fs::path(path).extension().string();
   for (char& c : suffix) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
@@ -41,7 +41,7 @@ void check_format(OutputKind kind, ImageFormat format, const std::string& path) 
   if (kind == OutputKind::deep && format != ImageFormat::exr)
     throw UsageError(fmt::format("{}: a deep file must be .exr", path));
   if (kind != OutputKind::picture && holds_pictures_alone(format))
-    throw UsageError(fmt::format("{}: JPEG and WebP hold only pictures; use .exr, .npy or .png", path));
+    throw UsageError(fmt::format("{}: JPEG and WebP hold only colour pictures; use .exr, .npy or .png", path));
 }
 
 ImageFormat format_of(const OutputSettings& settings, const std::string& path) {
@@ -65,13 +65,13 @@ void add(std::vector<FileToWrite>& files, const FileToWrite& added) {
   const bool shareable = added.format == ImageFormat::exr && path != "-" && added.layer == same->layer &&
                          !is_deep(kind) && !is_deep(same->kinds.front());
   if (!shareable || std::find(same->kinds.begin(), same->kinds.end(), kind) != same->kinds.end()) {
-    throw UsageError(
-        fmt::format("{}: two outputs have this name; only .exr files that are not deep hold several", path));
+    throw UsageError(fmt::format(
+        "{}: two outputs have this name; only an .exr file that is not deep can hold several outputs", path));
   }
   same->kinds.push_back(kind);
 }
 
-/// A canonical path, which is equal for all spellings of a path.
+/// Returns a canonical path, which is equal for all spellings of a path.
 std::string canonical(const std::string& path) {
   std::error_code ignored;
   const fs::path result = fs::weakly_canonical(fs::absolute(path, ignored), ignored);

@@ -18,41 +18,42 @@ struct FileToWrite {
   std::string path;  ///< "-" is standard output
   ImageFormat format;
   std::vector<OutputKind> kinds;
-  std::optional<int> layer = std::nullopt;  ///< with --layers: its layer
+  std::optional<int> layer = std::nullopt;  ///< the layer of the file, with --layers
 };
 
-/// The format of a suffix; empty if it names no image format.
+/// Returns the format that a suffix stands for, or nothing if it names no image format.
 [[nodiscard]] std::optional<ImageFormat> format_by_suffix(const std::string& path);
-/// Whether the format holds only pictures, no depths, ids or directions: JPEG and WebP.
+/// Whether the format, JPEG or WebP, holds only pictures, and no depths, ids or directions.
 [[nodiscard]] bool holds_pictures_alone(ImageFormat format);
 
-/// Names for reports and hashes: "picture", "depth", "ray_distance", "normals", "primitive_ids", ...
+/// Returns the name of a kind for reports and hashes: "picture", "depth", "ray_distance", "normals", "primitive_ids",
+/// ...
 [[nodiscard]] std::string_view kind_name(OutputKind kind);
 
-/// The text for {model}: the file's name without folder and suffix.
+/// Returns the text for {model}: the file's name without folder and suffix.
 [[nodiscard]] std::string model_name(const std::string& model);
-/// Replaces {model} and {view}, and {layer} if given; {{ and }} are braces.
+/// Replaces {model} and {view}, and {layer} if given. {{ and }} become single braces.
 /// \throws UsageError on any other name in braces.
 [[nodiscard]] std::string fill_template(std::string_view text, const std::string& model, const std::string& view,
                                         std::optional<int> layer = std::nullopt);
 
-/// Checks --format, which is for names without a format: it must not contradict names that all state one. `formats`
-/// lists the formats, separated by '|'; `given` is an index into it. \throws UsageError
+/// Checks --format, which is for names that state no format. It must not contradict the names if all of them state one.
+/// `formats` lists the formats, separated by '|'; `given` is an index into it. \throws UsageError
 void check_given_format(const std::vector<std::string>& paths, int given, std::string_view formats);
 
-/// The files of one view. Names with {layer} make one for each layer.
+/// Returns the files of one view. A name with {layer} gives a file for each layer.
 /// \throws UsageError for an unknown suffix, a format that cannot hold the kind, and a name taken twice
 [[nodiscard]] std::vector<FileToWrite> plan_outputs(const OutputSettings& settings, const std::string& model,
                                                     const std::string& view);
 
-/// \throws UsageError if a file is one of the inputs or is written twice; Error file_unwritable if its folder is
-/// missing or not writable, or if it is no regular file.
+/// Checks the files to write. \throws UsageError if a file is one of the inputs or is written twice; Error
+/// file_unwritable if its folder is missing or not writable, or if it is no regular file.
 void check_outputs(const std::vector<std::string>& paths, const InputFiles& inputs);
 
-/// \throws UsageError if a reference is one of the outputs, even if neither exists yet.
+/// Checks the references. \throws UsageError if a reference is one of the outputs, even if neither exists yet.
 void check_references(const std::vector<std::string>& references, const std::vector<std::string>& outputs);
 
-/// The path of the difference picture.
+/// Returns the path of the difference picture.
 [[nodiscard]] std::string difference_path(const OutputSettings& settings, const std::vector<FileToWrite>& files);
 
 }  // namespace frontmost::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Options that control the run; none changes any result.
+// Options that control the run. None of them changes any result.
 #include <fmt/format.h>
 
 #include <algorithm>

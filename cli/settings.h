@@ -32,7 +32,7 @@ struct DepthSettings {
   PolygonOffset offset;
 };
 
-/// The shape of the pixels' rays; all cameras but pinholes are ray cast.
+/// The shape of the pixels' rays. All cameras but pinholes are ray cast.
 enum class CameraModel : std::uint8_t { pinhole, panorama, fisheye };
 
 /// The camera and the pixel grid.
@@ -45,7 +45,7 @@ struct ViewSettings {
   bool orthographic = false;
   std::optional<int> camera_index;
   CameraModel camera_model = CameraModel::pinhole;
-  std::optional<double> fisheye_angle;              ///< full, degrees
+  std::optional<double> fisheye_angle;              ///< full angle in degrees
   std::optional<std::array<double, 4>> intrinsics;  ///< fx, fy, cx, cy
   PixelRule pixel_rule = PixelRule::centre_at_integer;
   std::optional<glm::dmat4> pose;
@@ -60,7 +60,7 @@ struct ViewSettings {
   DepthSettings depth;
 };
 
-/// One file to write.
+/// The contents of a file to write.
 enum class OutputKind : std::uint8_t {
   picture,
   deep,
@@ -114,7 +114,7 @@ struct OutputSettings {
 /// The method that determines visibility.
 enum class Method : std::uint8_t { zbuffer, raycast, abuffer };
 
-/// Every `count`-th view; the first one is number - 1.
+/// A part of a batch: every `count`-th view, beginning with view number - 1.
 struct Shard {
   int number = 1, count = 1;
 
@@ -185,7 +185,7 @@ struct DrawingSettings {
   std::optional<bool> casts_shadows;
   bool frame = false;
   TitleTexts texts;
-  int number = 1, count = 1;  ///< number of the sheet and of all sheets, if there are several models
+  int number = 1, count = 1;  ///< number of this sheet and number of all sheets, if there are several models
   std::optional<PageFormat> format;
   std::vector<std::string> outputs;
   std::vector<std::string> books;  ///< files with the sheets of several models as pages

@@ -12,14 +12,14 @@
 
 namespace frontmost::cli {
 
-/// The median: the middle value, or the mean of the two middle values. Precondition: not empty.
+/// Returns the median: the middle value, or the mean of the two middle values. Precondition: not empty.
 [[nodiscard]] inline double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t middle = values.size() / 2;
   return values.size() % 2 ? values[middle] : (values[middle - 1] + values[middle]) * 0.5;
 }
 
-/// Milliseconds since its construction.
+/// Measures milliseconds since its construction.
 class Stopwatch {
  public:
   [[nodiscard]] double milliseconds() const {
@@ -32,7 +32,7 @@ class Stopwatch {
 
 class StepTimes {
  public:
-  /// `execution` and its watch must outlive this object.
+  /// Watches the steps of a run. `execution` and its watch must outlive this object.
   explicit StepTimes(const Execution& execution) : given_(execution) {
     if (execution.watch) watch_ = *execution.watch;
     watch_.progress = [this, show = watch_.progress](std::string_view stage, double fraction) {
@@ -45,7 +45,7 @@ class StepTimes {
   StepTimes(const StepTimes&) = delete;
   StepTimes& operator=(const StepTimes&) = delete;
 
-  /// Execution for the work to be timed.
+  /// Returns the Execution for the work to be timed.
   [[nodiscard]] Execution execution() const { return {given_.threads, given_.isa, &watch_}; }
   /// Ends the current step and begins the one called `step`.
   void begin(std::string_view step) {
@@ -53,7 +53,7 @@ class StepTimes {
     step_ = step;
     stopwatch_ = {};
   }
-  /// Milliseconds of the finished steps, by name.
+  /// Returns the milliseconds of the finished steps, by name.
   [[nodiscard]] const std::map<std::string, double>& milliseconds() const { return milliseconds_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts text to values by std::from_chars: independent of the locale, with errors for trailing text and hexadecimal.
+// Converts text to values by std::from_chars, whatever the locale. Trailing text and hexadecimal numbers are errors.
 #include "cli/values.h"
 
 #include <fmt/format.h>
@@ -16,13 +16,13 @@
 namespace frontmost::cli {
 namespace {
 
-// Removes a leading '+', which from_chars refuses, but users write: "+1,0,0".
+// Returns the text without a leading '+', which from_chars refuses, but users write: "+1,0,0".
 std::string_view without_plus(std::string_view text) {
   return text.size() > 1 && text[0] == '+' && text[1] != '-' ? text.substr(1) : text;
 }
 
-/// A number that from_chars() refuses because it rounds to infinity or to zero. Precondition: the whole text is a
-/// number.
+/// Returns a number that from_chars() refuses because it rounds to infinity or to zero. Precondition: the whole text is
+/// a number.
 double beyond_doubles(std::string_view text) { return std::strtod(std::string(text).c_str(), nullptr); }
 
 std::optional<double> to_double(std::string_view text) {
@@ -70,7 +70,7 @@ std::optional<glm::vec3> hex_color(std::string_view text) {
   return color;
 }
 
-/// The number of insertions, deletions, replacements and swaps of neighbours that turn one word into the other.
+/// Returns the number of insertions, deletions, replacements and swaps of neighbours that turn one word into the other.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before, row(b.size() + 1), above;
   std::iota(row.begin(), row.end(), 0u);

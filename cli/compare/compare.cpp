@@ -42,10 +42,10 @@ void check(const Settings& settings) {
   check_view_settings(settings.view);
   // Each method reads the model in its own process.
   if (settings.view.samples.value_or(1) > 16) throw UsageError("--samples: compare takes 1, 2, 4, 8 or 16");
-  if (settings.model == "-") throw UsageError("compare reads its model several times: give a file");
+  if (settings.model == "-") throw UsageError("the command compare reads its model several times: give a file");
 }
 
-/// The files of the page; empty unless a page is asked for.
+/// Returns the files of the page, or none unless a page is asked for.
 std::vector<std::string> outputs_of(const Settings& settings) {
   std::vector<std::string> paths;
   if (!settings.compare.folder) return paths;

@@ -11,7 +11,8 @@
 namespace frontmost::cli {
 namespace {
 
-/// Time from surfaces to answer for the first view, and for each further view of the same surfaces.
+/// The time from surfaces to answer for the first view (`once`), and for each further view of the same surfaces
+/// (`again`).
 struct Cost {
   const Compared* method;
   double once, again;
@@ -26,7 +27,7 @@ std::string_view title(const Cost& cost) { return cost.method->run.method->title
 
 std::string times(double ratio) { return ratio < 10 ? fmt::format("{:.1f}", ratio) : fmt::format("{:.0f}", ratio); }
 
-/// Number of views after which a method with preparation overtakes one without; 0: never.
+/// Returns the number of views after which a method with preparation overtakes one without, or 0 if it never does.
 double views_to_catch_up(const Cost& prepared, const Cost& plain) {
   const double gain = plain.again - prepared.again, lead = prepared.once - plain.once;
   return gain > 0 && lead > 0 ? std::ceil(lead / gain) + 1 : 0;
@@ -75,7 +76,7 @@ std::string transparency(const Comparisons& all) {
       grouped(seen_through), spots(all.view));
 }
 
-/// Empty for methods that make no mistakes.
+/// Returns a sentence about a method's mistakes, or nothing if it makes none by design.
 std::optional<std::string> mistakes(const Compared& compared, const Comparisons& all) {
   if (compared.wrong_by_design() == 0) return std::nullopt;
   return fmt::format("{}: wrong in {} of {} {}, by design.", compared.run.method->title,

@@ -12,10 +12,10 @@ namespace frontmost::cli {
 
 struct CullingRun {
   double prepare = 0;                               ///< milliseconds, once
-  std::vector<double> times;                        ///< milliseconds a view
-  std::uint64_t outside = 0, hidden = 0, open = 0;  ///< instances by verdict; open: may be visible
-  std::uint64_t seen = 0;                           ///< instances that the z-buffer shows at a sample
-  std::uint64_t wrong = 0;  ///< visible instances that culling called outside or hidden; must be 0
+  std::vector<double> times;                        ///< milliseconds per view
+  std::uint64_t outside = 0, hidden = 0, open = 0;  ///< numbers of instances by verdict; `open` ones may be visible
+  std::uint64_t seen = 0;                           ///< number of instances that the z-buffer shows at a sample
+  std::uint64_t wrong = 0;  ///< number of visible instances that culling called outside or hidden; must be 0
 
   [[nodiscard]] std::uint64_t objects() const { return outside + hidden + open; }
 };

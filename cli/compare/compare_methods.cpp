@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The methods as functions of one type, called as users of the library call them. Preparation (an index) and work for a
-// view are timed separately, because many views of one model share the preparation.
+// Wraps the methods as functions of one type, and calls them as users of the library do. Preparation (an index) and
+// work for a view are timed separately, because many views of one model share the preparation.
 #include "cli/compare/compare_methods.h"
 
 #include <frontmost/abuffer.h>
@@ -22,13 +22,13 @@ Answer answer_by_raycast(const Surfaces& surfaces, const View& view, const Execu
   return {clock.time("visible", [&] { return raycast(index, view, execution); }), {}, index.triangle_count()};
 }
 
-/// Finds two layers, because the second one shows through the first.
+/// Answers by the A-buffer. Finds two layers, because the second one shows through the first.
 Answer answer_by_abuffer(const Surfaces& surfaces, const View& view, const Execution& execution, StageClock& clock) {
   std::vector<Visible> layers = clock.time("visible", [&] { return visible_layers(surfaces, view, 2, {}, execution); });
   return {std::move(layers[0]), std::move(layers[1]), surfaces.primitive_count()};
 }
 
-/// Sorts the polygons and paints them one over the other.
+/// Answers by a method that sorts the polygons and paints them one over the other.
 template <PaintMethod method>
 Answer answer_by_painter(const Surfaces& surfaces, const View& view, const Execution& execution, StageClock& clock) {
   return {

@@ -17,7 +17,7 @@
 
 namespace frontmost::cli {
 
-/// A step that took time, once or several times; milliseconds.
+/// A step of the work, and the milliseconds that it took each time.
 struct Stage {
   std::string name;
   std::vector<double> times;
@@ -41,14 +41,14 @@ class StageClock {
   std::vector<Stage> stages_;
 };
 
-/// A method's answer and the size of its input.
+/// The answer of a method, and the size of its input.
 struct Answer {
   Visible visible;
   std::optional<Visible> behind;  ///< layer behind the front-most, if the method finds it
   std::uint64_t primitives = 0;   ///< triangles that the method works on
 };
 
-/// Numbers of fragments, for methods that keep lists of them.
+/// The number of fragments, and the length of the longest list, for methods that keep lists of fragments.
 struct KeptLists {
   std::uint64_t fragments = 0, longest = 0;
 };
@@ -58,29 +58,30 @@ struct ComparedMethod {
   std::string_view title;  ///< the common name
   std::string_view how;    ///< the principle, in a sentence
   Answer (*answer)(const Surfaces&, const View&, const Execution&, StageClock&);
-  KeptLists (*lists)(const Surfaces&, const View&, const Execution&) = nullptr;  ///< counted outside of the timing
+  KeptLists (*lists)(const Surfaces&, const View&, const Execution&) = nullptr;  ///< counts the lists, outside of the
+                                                                                 ///< timing
   bool is_naive = false;  ///< known to be wrong: shown, but not counted among those that agree
 };
 
-/// The others are compared with the first method.
+/// Returns the compared methods. All others are compared with the first one.
 [[nodiscard]] std::span<const ComparedMethod> compared_methods();
 
 /// The run of one method.
 struct MethodRun {
   const ComparedMethod* method = nullptr;
-  std::vector<Stage> stages;     ///< "load" and "surfaces" once, stages of the method --runs times
+  std::vector<Stage> stages;     ///< "load" and "surfaces" have one time, stages of the method --runs times
   std::uint64_t peak_bytes = 0;  ///< peak of resident memory beyond model and surfaces
   Answer answer;
   std::optional<KeptLists> lists;
 
-  /// The number of times that the method ran.
+  /// Returns the number of times that the method ran.
   [[nodiscard]] std::size_t runs() const { return stages.empty() ? 0 : stages.back().times.size(); }
-  /// The median time of a stage; empty if the method lacks the stage.
+  /// Returns the median time of a stage, or nothing if the method lacks the stage.
   [[nodiscard]] std::optional<double> median_of(std::string_view stage) const;
 };
 
 /// Reads the model and runs the method in a process of its own. Precondition: this process has no threads yet. \throws
-/// the method's error; Error unsupported if its process ends otherwise.
+/// the method's error; Error unsupported if the other process ends without a result.
 [[nodiscard]] MethodRun run_alone(const ComparedMethod& method, const Settings& settings);
 
 }  // namespace frontmost::cli

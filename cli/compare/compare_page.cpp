@@ -40,7 +40,7 @@ tr:last-child > * { border-bottom: 0; }
 
 struct Cause {
   Difference difference;
-  bool of_naive;    ///< counted only for methods that are known to be wrong
+  bool of_naive;    ///< whether it is counted only for methods that are known to be wrong
   glm::vec3 color;  // sRGB
   const char* text;
 
@@ -49,7 +49,7 @@ struct Cause {
     return of_naive ? c.wrong_by_design() : c.unexplained();
   }
 };
-// Colours that differ in either kind of colour blindness, on dark grey.
+// Colours that can be told apart on dark grey with either kind of colour blindness.
 constexpr Cause causes[] = {
     {Difference::edge, false, {0.99f, 0.72f, 0.15f}, "edge within 1/128 pixel"},
     {Difference::depth, false, {0.31f, 0.70f, 1.0f}, "depths closer than floats resolve"},
@@ -59,7 +59,8 @@ constexpr Cause causes[] = {
 
 float linear(float srgb) { return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f); }
 
-/// Marks are squares, because a single pixel is invisible in a small picture. Rarer and worse differences go on top.
+/// Marks differing samples by squares, because a single pixel is invisible in a small picture. Rarer and worse
+/// differences go on top.
 void mark(const Compared& compared, Image& map) {
   const Agreement& agreement = compared.agreement;
   const int reach = std::max(map.width, map.height) / 320;
@@ -79,7 +80,7 @@ void mark(const Compared& compared, Image& map) {
   }
 }
 
-/// The differing pixels over the picture in dim grey.
+/// Returns the differing pixels over the picture, which becomes dim grey.
 Image difference_map(const Compared& compared, const Image& picture) {
   Image map{picture.width, picture.height, {}};
   for (const char* channel : {"R", "G", "B", "A"})
@@ -100,7 +101,7 @@ std::string row(std::string_view label, const std::vector<std::string>& cells, s
   return text + "</tr>\n";
 }
 
-/// A row of numbers with bars that show their share of the greatest number in the row.
+/// Returns a row of numbers, with bars that show the share of each number in the greatest one of the row.
 template <class Number, class Text>
 std::string bar_row(const Comparisons& all, std::string_view label, const Number& number, const Text& text) {
   double greatest = 0;
@@ -169,12 +170,12 @@ std::string legend() {
 std::string picture_name(const ComparedMethod& method) { return std::string(method.name) + ".png"; }
 std::string map_name(const ComparedMethod& method) { return std::string(method.name) + "-differences.png"; }
 
-/// The first method has no difference map.
+/// Saves the pictures and difference maps of the methods. The first method has no difference map.
 void save_pictures(const Comparisons& all, const StagedFolder& folder, const Execution& execution) {
   bool is_first = true;
   for (const Compared& compared : all.methods) {
     const ComparedMethod& method = *compared.run.method;
-    // The picture of this method; a method that keeps lists sees through glass.
+    // A method that keeps lists sees through glass, so its picture does, too.
     const ShadeOptions options{.background = std::nullopt,
                                .layers = {.see_through = method.lists ? SeeThrough::always : SeeThrough::never}};
     const Image picture = shade(all.surfaces, compared.run.answer.visible, options, execution);
@@ -222,7 +223,7 @@ std::vector<std::string> page_names() {
 }
 
 void write_page(const Comparisons& all, const std::string& folder, const Execution& execution) {
-  // Covers all files together: an interruption in between removes the finished ones, too.
+  // One object covers all files, so that an interruption between files removes the finished ones, too.
   const WritingFiles writing;
   const StagedFolder staged(folder);
   try {

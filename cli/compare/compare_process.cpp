@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The child process runs a method and sends the result through a pipe: first how it ended, then numbers and planes as
-// they lie in memory.
+// The child process runs a method and sends the result through a pipe: first how the run ended, then numbers and planes
+// as they lie in memory.
 #include <fmt/format.h>
 #include <frontmost/files.h>
 #include <malloc.h>
@@ -107,7 +107,7 @@ class Receiver {
   std::string_view method_;
 };
 
-/// A field of /proc/self/status, such as VmRSS, in bytes; 0 if missing.
+/// Returns a field of /proc/self/status, such as VmRSS, in bytes, or 0 if the field is missing.
 std::uint64_t status_bytes(std::string_view field) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)
@@ -116,7 +116,8 @@ std::uint64_t status_bytes(std::string_view field) {
   return 0;
 }
 
-/// Starts the measurement: returns free memory to the system and resets the high-water mark to the current use.
+/// Starts the measurement: gives free memory back to the system, and resets the high-water mark. \returns the current
+/// use.
 std::uint64_t start_counting_memory() {
   malloc_trim(0);
   std::ofstream("/proc/self/clear_refs") << 5;
@@ -137,7 +138,7 @@ MethodRun run_here(const ComparedMethod& method, const Settings& settings) {
   MethodRun run;
   const std::uint64_t before = start_counting_memory();
   for (int i = 0; i < settings.compare.most_runs(); ++i) {
-    run.answer = {};  // same state as before the first run
+    run.answer = {};  // so that each run begins in the same state
     const Stopwatch watch;
     run.answer = method.answer(*surfaces, view, execution, clock);
     if (i == 0) run.peak_bytes = std::max(status_bytes("VmHWM"), before) - before;

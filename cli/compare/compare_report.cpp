@@ -14,7 +14,8 @@ namespace {
 
 constexpr Difference explained_causes[] = {Difference::edge, Difference::depth, Difference::translucent};
 
-/// One line: a label, then a cell for each method, under its name. Columns are as wide as the longest name.
+/// Returns a line: a label, and a cell for each method under its name. A column is at least as wide as its method's
+/// name.
 template <class Cell>
 std::string row_of(const Comparisons& all, std::string_view what, const Cell& cell) {
   constexpr std::size_t least = 13, gap = 2;

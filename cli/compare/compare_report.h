@@ -15,7 +15,7 @@ struct Compared {
   MethodRun run;
   Agreement agreement;
 
-  /// Differences that nothing explains: mistakes, unless the method is known to make some.
+  /// Returns the number of differences that nothing explains, or 0 for a method that is known to be wrong.
   [[nodiscard]] std::uint64_t unexplained() const { return run.method->is_naive ? 0 : wrong(); }
   [[nodiscard]] std::uint64_t wrong_by_design() const { return run.method->is_naive ? wrong() : 0; }
 
@@ -32,27 +32,27 @@ struct Comparisons {
   std::vector<std::string> files;  ///< files that were written
 };
 
-/// The stages of all methods, in order.
+/// Returns the stages of all methods, in order.
 [[nodiscard]] std::vector<std::string> stage_names(const std::vector<Compared>& methods);
 [[nodiscard]] std::string mebibytes(std::uint64_t bytes);
-/// The unit of differences: "pixels" if each has one sample.
+/// Returns the unit of differences: "pixels" if each has one sample.
 [[nodiscard]] std::string_view spots(const View& view);
-/// The grid, as in "1920 x 1080 pixels, 4 samples each".
+/// Returns the grid in words, as in "1920 x 1080 pixels, 4 samples each".
 [[nodiscard]] std::string grid_of(const View& view, std::string_view times);
-/// The number of runs, as in "medians of 5 runs".
+/// Returns the number of runs in words, as in "medians of 5 runs".
 [[nodiscard]] std::string runs_of(const Comparisons& all);
 [[nodiscard]] std::uint64_t covered_samples(const Visible& visible);
 
-/// One sentence about the results of occlusion culling.
+/// Returns a sentence about the results of occlusion culling.
 [[nodiscard]] std::string culling_text(const Comparisons& all);
 [[nodiscard]] std::string compare_text(const Comparisons& all);
 [[nodiscard]] Json compare_json(const Comparisons& all);
-/// Sentences that tell which method suits, according to these figures.
+/// Returns sentences that tell which method suits, according to these figures.
 [[nodiscard]] std::vector<std::string> advice(const Comparisons& all);
 
-/// Names of the page's files: pictures, difference maps, and index.html.
+/// Returns the names of the page's files: pictures, difference maps, and index.html.
 [[nodiscard]] std::vector<std::string> page_names();
-/// Writes all of these files into the folder, or none. \throws Error file_unwritable.
+/// Writes the page's files into the folder, or none of them. \throws Error file_unwritable.
 void write_page(const Comparisons& all, const std::string& folder, const Execution& execution);
 
 }  // namespace frontmost::cli

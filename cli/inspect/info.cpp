@@ -33,7 +33,7 @@ struct CylinderCount {
 };
 constexpr std::uint64_t most_for_cylinders = 200'000;  // triangles, which take a fifth of a second
 
-constexpr std::size_t lines_shown = 20;  // objects, materials, cameras, lights; JSON has all
+constexpr std::size_t lines_shown = 20;  // most lines for objects, materials, cameras or lights; JSON has all
 constexpr std::string_view axis_names[] = {"+x", "+y", "+z", "-x", "-y", "-z"};
 constexpr std::string_view alpha_names[] = {"opaque", "mask", "blend"};
 constexpr std::string_view light_names[] = {"sun", "point", "spot"};
@@ -70,7 +70,7 @@ Json odd_json(const Oddities& odd) {
   return json;
 }
 
-/// The corners of a box; null for a model without a finite point.
+/// Returns the corners of a box, or null for a model without a finite point.
 Json box_json(const Box& box, const glm::dvec3& origin) {
   if (box.is_empty()) return nullptr;
   return {{"low", to_json(in_file(box.low, origin))}, {"high", to_json(in_file(box.high, origin))}};
@@ -156,7 +156,7 @@ Json list(const std::vector<T>& elements, const Turn& turn) {
   return result;
 }
 
-/// A heading and a line for each of the first elements, then the number of others.
+/// Returns a heading, a line for each of the first elements, and the number of the others.
 template <class T, class Line>
 std::string section(std::string_view heading, const std::vector<T>& elements, const Line& line) {
   if (elements.empty()) return {};
@@ -184,10 +184,10 @@ std::string light_line(const LightReport& light, const glm::dvec3& origin) {
   return text;
 }
 
-/// A line about positions that floats may be too coarse for, or about the origin that prevents this.
+/// Returns a line about positions that floats may round too coarsely, or about the origin that prevents this.
 std::string rounding_line(const SceneReport& report) {
-  constexpr double coarse = 1e-6;  // of the diagonal: a thousandth of a pixel in a picture of the whole model
-  constexpr double wide = 1e-3;    // in any unit: from 16384 units on, details may be smaller
+  constexpr double coarse = 1e-6;  // part of the diagonal: a thousandth of a pixel in a picture of the whole model
+  constexpr double wide = 1e-3;    // in the model's unit: coordinates beyond 16384 are rounded by as much
   const bool is_away = report.origin != glm::dvec3(0);
   const double worth_telling = std::min(wide, coarse * double(report.bounds.diagonal()));
   if (!is_away && report.rounding <= worth_telling) return {};
@@ -195,7 +195,7 @@ std::string rounding_line(const SceneReport& report) {
   return fmt::format("  rounding   {:.2g} at most{}\n", report.rounding, about);
 }
 
-/// The meshes with the highest counts of an oddity, highest first.
+/// Returns the meshes with the highest counts of an oddity, in descending order.
 std::string odd_meshes(const SceneReport& report, std::uint64_t Oddities::*count) {
   constexpr std::size_t meshes_shown = 5;
   std::vector<std::size_t> odd;
@@ -239,7 +239,8 @@ std::string unit_line(const std::optional<ModelUnit>& unit, const Box& bounds) {
                      unit->is_guess ? ", a guess" : "", size.x, size.y, size.z, shown.name);
 }
 
-/// The file's own unit or else the likely one for the model's size. Empty if several are likely.
+/// Returns the file's own unit, or else the likely unit for the model's size. Returns nothing if several units are
+/// likely.
 std::optional<ModelUnit> unit_of_model(const SceneReport& report, std::optional<double> metres_per_unit) {
   if (report.bounds.is_empty()) return std::nullopt;
   if (metres_per_unit) return ModelUnit{*metres_per_unit, false};
@@ -247,7 +248,7 @@ std::optional<ModelUnit> unit_of_model(const SceneReport& report, std::optional<
   return likely.size() == 1 ? std::optional(ModelUnit{likely.front(), true}) : std::nullopt;
 }
 
-/// Empty for models with too many triangles.
+/// Counts the cylinders. Returns nothing for models with too many triangles.
 std::optional<CylinderCount> count_cylinders(const Scene& scene, const Execution& execution) {
   if (triangle_count(scene) > most_for_cylinders) return std::nullopt;
   constexpr double whole_turn = 2 * glm::pi<double>() - 0.01;

@@ -44,7 +44,7 @@ Paper paper_from(std::string_view text) {
   try {
     return named_paper(text);
   } catch (const Error& error) {
-    throw UsageError(fmt::format("{}; W,H in millimetres; or fit", error.what()));
+    throw UsageError(fmt::format("{}; or give W,H in millimetres, or the word fit", error.what()));
   }
 }
 
@@ -71,7 +71,7 @@ glm::dvec3 light_from(std::string_view text) {
   return light;
 }
 
-/// Text of a title block. \throws UsageError if it has more characters than fit into its field legibly.
+/// Returns a text of the title block. \throws UsageError if it has more characters than fit into its field legibly.
 std::string field_text(const Given& given, std::size_t most) {
   const auto is_first = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; };
   const auto count = std::size_t(std::count_if(given.text.begin(), given.text.end(), is_first));

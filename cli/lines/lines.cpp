@@ -42,7 +42,7 @@ Json view_json(const DrawnView& view, const std::string& name) {
           {"hidden_mm", hidden}};
 }
 
-/// The report. `page` is the page of the sheet as written.
+/// Returns the report of a sheet. `page` is the page of the sheet as written.
 Json lines_json(const Settings& settings, const Sheet& sheet, const Page& page, const StepTimes& times) {
   Json json = {{"model", settings.model}, {"page_mm", {page.width, page.height}}};
   json["scale"] = sheet.scale ? Json(*sheet.scale) : Json(nullptr);
@@ -82,14 +82,15 @@ void check_outputs_of(const Settings& settings) {
   if (s.format) check_given_format(s.outputs, int(*s.format), "svg|pdf|dxf|json");
   const bool takes_output = std::find(s.outputs.begin(), s.outputs.end(), "-") != s.outputs.end();
   if (takes_output && settings.run.json)
-    throw UsageError("--json and an output to - both write to standard output; give a file");
+    throw UsageError("--json and the output '-' both write to standard output; give a file");
 }
 
 std::optional<PageFormat> format_of(const std::string& path, const DrawingSettings& settings) {
   return page_format(path) ? page_format(path) : settings.format;
 }
 
-/// Writes all outputs. Plotters get the page as paths; programs that read DXF know line types.
+/// Writes all outputs. DXF files get `page`, because programs that read them know line types. Other files get
+/// `plotted`, which has real dashes for plotters.
 void write(const Page& page, const Page& plotted, const Settings& settings, const Execution& execution) {
   for (const std::string& path : settings.drawing.outputs) {
     stop_if_interrupted();
@@ -107,12 +108,12 @@ void write_books(const std::vector<Page>& pages, const Settings& settings, const
   }
 }
 
-/// STL files hold only object names that programs invent, so a single object is named after its file.
+/// Names a single object after its file in STL files, which hold only object names that programs invent.
 void name_object(Scene& scene) {
   if (scene.source.format == ModelFormat::stl && scene.instances.size() == 1) scene.instances[0].name = scene.name;
 }
 
-/// Warnings about objects with open outlines.
+/// Returns warnings about objects with open outlines.
 std::vector<std::string> open_outlines(const Sheet& sheet) {
   std::vector<std::string> warnings;
   for (const DrawnView& view : sheet.views) {
@@ -146,7 +147,7 @@ void warn_of(const Sheet& sheet, const Surfaces& surfaces, const Settings& setti
         {fmt::format("cylinders without a diameter, because none of their lines is drawn: {}{}", sheet.undrawn,
                      settings.drawing.sheet.hidden == HiddenLines::none ? "; --hidden dashed draws hidden ones" : "")});
   if (sheet.prisms > 0)
-    warn({fmt::format("cylinders of 7 to 17 sides, which count as prisms and have no diameter: {}", sheet.prisms)});
+    warn({fmt::format("cylinders of 7 to 17 sides count as prisms and get no diameter: {}", sheet.prisms)});
 }
 
 /// Draws one model and writes its own files. Adds its page to `pages` if a file holds all sheets. \returns the report.
@@ -169,8 +170,8 @@ Json draw_model(const Settings& settings, std::vector<Page>& pages, const Execut
   return lines_json(settings, sheet, plotted, times);
 }
 
-/// Moves files that hold the sheets of all models as pages from `outputs` to `books`. \throws UsageError if a file can
-/// hold only one sheet.
+/// Moves from `outputs` to `books` the files that hold the sheets of all models, each sheet on a page. \throws
+/// UsageError if a file can hold only one sheet.
 void part_outputs(DrawingSettings& sheet) {
   std::vector<std::string> own;
   for (const std::string& path : sheet.outputs) {
@@ -187,8 +188,8 @@ void part_outputs(DrawingSettings& sheet) {
   sheet.outputs = std::move(own);
 }
 
-/// The settings of each model's sheet; each has files of its own or pages of a common file. \throws UsageError if a
-/// file would be written twice.
+/// Returns the settings of each model's sheet. A sheet has files of its own, or is a page of a common file. \throws
+/// UsageError if a file would be written twice.
 std::vector<Settings> sheets_of(const Settings& given) {
   std::vector<std::string> models = given.more_models;
   models.insert(models.begin(), given.model);

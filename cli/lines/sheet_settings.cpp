@@ -16,7 +16,8 @@ namespace {
 
 constexpr double largest_usual = 50;  // ISO 5455 has no greater enlargement
 
-constexpr glm::ivec2 fine_grid{3840, 2160};  // same shape as render's default picture, for the same camera
+constexpr glm::ivec2 fine_grid{3840, 2160};  // same aspect ratio as render's default picture, so that the camera is the
+                                             // same
 
 /// Calls `work` and turns the library's errors about a field of the options into usage errors about the flag of that
 /// name.

@@ -22,16 +22,16 @@ struct LengthUnit {
 /// Units in the order of --unit.
 inline constexpr LengthUnit length_units[] = {{"mm", 1}, {"cm", 10}, {"m", 1000}, {"in", 25.4}};
 
-/// A hint about the model's unit: if --unit overrules the file, or if a sheet's automatic scale exceeds any usual one
-/// (50:1, ISO 5455) because the file states no unit and millimetres were assumed. The hint then lists likely units for
-/// the model's size. Empty if nothing is odd or no other unit is likely.
+/// Returns a hint about the model's unit, if --unit overrules the file. Also returns a hint, with likely units for the
+/// model's size, if a sheet's automatic scale exceeds any usual one (50:1, ISO 5455) because the file states no unit
+/// and millimetres were assumed. Returns nothing if nothing is odd or no other unit is likely.
 [[nodiscard]] std::optional<std::string> unit_hint(const DrawingSettings& settings, const Surfaces& surfaces,
                                                    double scale);
 
 /// Finds options that exclude or need one another, before a model is read. \throws UsageError naming the options.
 void check_drawing_settings(const Settings& settings);
 
-/// The options of a sheet for the model of that name.
+/// Returns the options of a sheet for the model of that name.
 [[nodiscard]] SheetOptions sheet_options(const Settings& settings, const std::string& model);
 
 /// Draws the sheet. \throws UsageError naming a flag if its value does not fit on the page or misses the model; other

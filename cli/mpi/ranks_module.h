@@ -11,8 +11,8 @@ namespace frontmost::cli {
 inline constexpr const char* mpi_module = "frontmost_mpi.so";
 /// The name of the module's function, of type JoinRanks.
 inline constexpr const char* join_function = "frontmost_join_ranks";
-/// Starts MPI. Destroying the object leaves the ranks and ends MPI. Errors of MPI end all ranks, with MPI's message.
-/// Call once.
+/// The type of a function that starts MPI. Destroying the returned object leaves the ranks and ends MPI. Errors of MPI
+/// end all ranks, with MPI's message. The function is to be called once.
 using JoinRanks = Ranks* (*)();
 
 }  // namespace frontmost::cli

@@ -54,7 +54,7 @@ void check(const Settings& settings) {
   const std::vector<std::string> files = outputs_of(precision);
   check_outputs(files, input_files(settings));
   if (settings.run.json && std::find(files.begin(), files.end(), "-") != files.end())
-    throw UsageError("--json and an output to - both write to standard output; give a file");
+    throw UsageError("--json and the output '-' both write to standard output; give a file");
 }
 
 ViewSettings with_far(const Settings& settings) {
@@ -63,7 +63,7 @@ ViewSettings with_far(const Settings& settings) {
   return view;
 }
 
-/// The requested buffer, or those in common use.
+/// Returns the requested buffer, or the buffers in common use.
 std::vector<PrecisionResult> buffers_of(const Settings& settings, const Projection& projection) {
   const bool reversed = settings.view.depth.reversed;
   std::vector<PrecisionResult> results;
@@ -110,7 +110,7 @@ void save_plot(const PrecisionRun& run) {
             *settings.precision.plot);
 }
 
-/// The greatest distance of a box's corners from the eye or from the origin.
+/// Returns the greatest distance of a box's corners from the eye or from the origin.
 double reach_of(const Box& box, const glm::dvec3& eye) {
   const glm::dvec3 low(box.low), high(box.high);
   const auto farthest = [&](const glm::dvec3& from) {
@@ -139,7 +139,7 @@ void look_for_remedies(PrecisionRun& run, const ExactVisible& exact, const Execu
   }
 }
 
-/// Finds fighting faces. If the model is too near the eye, nearly all pairs of faces fight and exceed a limit; the rest
+/// Finds fighting faces. If the model is too near the eye, nearly all pairs of faces fight and exceed a limit. The rest
 /// of the report is still useful.
 void find_areas(const Surfaces& surfaces, const View& view, PrecisionResult& result, const Execution& execution) try {
   result.areas = find_fighting_faces(surfaces, view, result.setup.format, result.setup.reversed, execution);

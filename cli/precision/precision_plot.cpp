@@ -90,7 +90,7 @@ std::string grid(const Axes& axes) {
   std::string minor, major, labels;
   const auto vertical = [](double x) { return fmt::format("M{:.1f} {}V{}", x, top, bottom); };
   const auto horizontal = [](double y) { return fmt::format("M{} {:.1f}H{}", left, y, right); };
-  // With too many decades, only some get lines and labels.
+  // If there are many decades, only some of them get lines and labels.
   const int skip = std::max(1, int((axes.y_high - axes.y_low) / 9)),
             x_skip = std::max(1, int((axes.x_high - axes.x_low) / 9));
   for (int e = int(std::ceil(axes.x_low - 1e-9)); e <= axes.x_high + 1e-9; ++e) {
@@ -124,7 +124,7 @@ std::string path_of(const PlotLine& line, const Axes& axes, bool stands_back) {
                      stands_back ? " opacity=\"0.45\"" : "");
 }
 
-/// Labels beside the ends of the lines, in the same order, far enough apart to be legible.
+/// Returns the labels beside the ends of the lines, in the same order, and far enough apart to be legible.
 std::string names_of(const std::vector<PlotLine>& lines, const Axes& axes) {
   struct Name {
     double y;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables of gaps: one buffer with its parts, or several side by side. With a model, also the fighting objects.
+// Prints tables of gaps: for one buffer with the parts of the gaps, or for several buffers side by side. With a model,
+// lists the fighting objects, too.
 #include "cli/precision/precision_report.h"
 
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ std::string object_name(const PrecisionRun& run, std::uint32_t instance) {
   return (*run.names)[instance];
 }
 
-/// The table of a single buffer, with details.
+/// Returns the table of a single buffer, with details.
 std::string table_of(const PrecisionRun& run, const DepthSetup& setup) {
   std::string text = fmt::format("{:>12}  {:>12}  {:>12}  {:>12}  {:>14}  {:>11}\n", "distance", "of format",
                                  "of positions", "smallest gap", "gap / distance", "values used");
@@ -38,7 +39,7 @@ std::string table_of(const PrecisionRun& run, const DepthSetup& setup) {
   return text;
 }
 
-/// The table of several buffers, side by side.
+/// Returns the table of several buffers, side by side.
 std::string table_of(const PrecisionRun& run) {
   std::string text = fmt::format("{:>12}  {:>12}", "distance", "of positions");
   for (const PrecisionResult& result : run.results) text += fmt::format("  {:>12}", setup_name(result.setup));
@@ -64,12 +65,12 @@ std::string reach_text(const PrecisionRun& run) {
       reach);
 }
 
-/// The near plane that resolves the wanted gap, including the rounding of positions.
+/// Returns the near plane that resolves the wanted gap, including the rounding of positions.
 std::optional<double> near_for(const PrecisionRun& run, const DepthSetup& setup) {
   const glm::dvec2 wanted = *run.settings.precision.wanted;
   const double rounding = rounding_gap(setup, wanted.y, run.reach);
-  // Rounding also shifts the distance at which the format is evaluated, and grows with it. Both effects are below this
-  // share.
+  // Rounding also shifts the distance at which the format is evaluated, and grows with this distance. Both effects are
+  // below this share.
   constexpr double slack = 4e-6;
   const double left_over = wanted.x * (1 - slack) - rounding;
   if (left_over <= 0) return std::nullopt;
@@ -128,7 +129,7 @@ std::string_view kind_name(FightKind kind) {
   return "";
 }
 
-/// The visible area in pixels squared, of all pairs or of one kind.
+/// Returns the visible area in square pixels, of all pairs or of one kind.
 double visible_area(const FightAreas& areas, std::optional<FightKind> kind) {
   double sum = 0;
   for (const FightingObjects& pair : areas.objects)
@@ -151,7 +152,7 @@ std::string remedies_text(const PrecisionResult& result) {
   return text;
 }
 
-/// The fighting pairs of objects, for a single buffer.
+/// Returns the fighting pairs of objects, for a single buffer.
 std::string pairs_text(const PrecisionRun& run) {
   const PrecisionResult& result = run.results.front();
   std::string text;
@@ -210,7 +211,7 @@ Json fights_json(const PrecisionRun& run, const DepthFights& fights) {
           {"pairs", std::move(pairs)}};
 }
 
-/// The pairs of faces with the largest visible areas.
+/// Returns the pairs of faces with the largest visible areas.
 Json faces_json(const FightAreas& areas) {
   constexpr std::size_t most_faces = 1000;
   std::vector<const FightingFaces*> largest;

@@ -18,13 +18,13 @@ namespace frontmost::cli {
 struct PrecisionResult {
   DepthSetup setup;
   std::optional<DepthFights> fights;  ///< with a model
-  std::optional<FightAreas> areas;    ///< with a model, unless there are too many
-  std::string too_many;               ///< why there are no areas
+  std::optional<FightAreas> areas;    ///< with a model, unless there are too many pairs
+  std::string too_many;               ///< the reason if there are no areas
   /// Remedies; only with a model and a single buffer.
   std::vector<FightRemedy> remedies;
   std::vector<std::optional<OffsetRemedy>> offsets;  ///< for the first pairs of objects
 
-  /// The number of pairs of objects that are examined.
+  /// The greatest number of pairs of objects that are examined.
   static constexpr std::size_t pairs_shown = 10;
 };
 
@@ -41,14 +41,14 @@ struct PrecisionRun {
   [[nodiscard]] const ClipDistances& clip() const { return results.front().setup.clip; }
 };
 
-/// The buffer's name, as in "D24" or "F32 reversed".
+/// Returns the buffer's name, as in "D24" or "F32 reversed".
 [[nodiscard]] std::string setup_name(const DepthSetup& setup);
 
 [[nodiscard]] std::string precision_text(const PrecisionRun& run);
 [[nodiscard]] Json precision_json(const PrecisionRun& run);
 
-/// Draws gaps of common formats against distance. `chosen` is highlighted; without it, all look alike. `wanted` is a
-/// gap and a distance to mark.
+/// Draws gaps of common formats against distance. `chosen` is highlighted; without it, all lines look alike. `wanted`
+/// is a gap and a distance to mark.
 [[nodiscard]] std::string precision_plot(const ClipDistances& clip, bool orthographic,
                                          const std::optional<DepthSetup>& chosen,
                                          const std::optional<glm::dvec2>& wanted);

@@ -19,7 +19,7 @@
 namespace frontmost::cli {
 namespace {
 
-/// Two ascending numbers within limits. \throws UsageError with `what` if their order is wrong.
+/// Returns two ascending numbers within limits. \throws UsageError with the text `what` if their order is wrong.
 glm::dvec2 ordered_pair(const Given& given, const NumberLimits& limits, const char* what) {
   const std::vector<double> ends = parse_numbers(given.text, 2, limits);
   if (ends[0] > ends[1]) throw UsageError(what);
@@ -129,7 +129,7 @@ Lidar rings_of(const LidarSettings& s) {
   return lidar;
 }
 
-/// The rays in the scanner's own axes.
+/// Returns the rays in the scanner's own axes.
 RayCamera rays_of(const LidarSettings& s) {
   RayCamera camera;
   if (s.directions)
@@ -143,7 +143,7 @@ RayCamera rays_of(const LidarSettings& s) {
   return camera;
 }
 
-/// The scanner's pose: upright in the model.
+/// Returns the scanner's pose, which is upright in the model.
 glm::dmat4 pose_of(const LidarSettings& s, const Surfaces& surfaces) {
   FrameOptions front;
   front.direction = NamedView::front;
@@ -176,7 +176,7 @@ void write(const std::string& path, const RangeScan& met, const RayScene& rays, 
   save(range_image(met, rays, &incidences), path, {}, execution);
 }
 
-/// The report: points met, in total and by object.
+/// Returns the report, with the number of points that rays meet, in total and by object.
 Json report(const Settings& settings, const RangeScan& scan, const RayScene& rays) {
   std::vector<std::uint64_t> points(rays.scene().instances.size());
   std::uint64_t met = 0;

@@ -3,7 +3,7 @@
 //
 //   from o-------------------x - - - - - o to      clear, or blocked: by which object, and where (x)
 //
-// Users give points in the coordinates of the model's file; the library's are relative to the scene's origin.
+// Users give points in the coordinates of the model's file; points of the library are relative to the scene's origin.
 #include <fmt/format.h>
 
 #include <algorithm>

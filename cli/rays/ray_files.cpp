@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text is read line by line; errors name the line's number. The size is limited, so that an endless file is found
+// Text is read line by line, and errors name the line's number. The size is limited, so that an endless file is found
 // before it fills the memory.
 #include "cli/rays/ray_files.h"
 

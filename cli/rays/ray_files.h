@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of rays and of scans: input as lines of a few numbers, output as points.
+// Files of rays and of scans. Input is lines of a few numbers each, output is points.
 //
-//   # from            to            a pair of points a line, or a direction: LineRule gives the number of values
+//   # from            to            one pair of points per line, or one direction: LineRule gives the number of values
 //   0, -5, 1.8        4, 20, 1.8
 #pragma once
 
@@ -12,13 +12,14 @@
 
 namespace frontmost::cli {
 
-/// The number of values on a line, and the reason, for error messages: "a pair of points needs six numbers".
+/// The number of values that each line must have, and the text of the error if a line has more or fewer values: "a pair
+/// of points needs six numbers".
 struct LineRule {
   std::size_t count;
   const char* text;
 };
 
-/// The numbers of all lines in order; # starts a comment, and lines without numbers are skipped. \throws Error
+/// Returns the numbers of all lines, in order. # starts a comment, and lines without numbers are skipped. \throws Error
 /// file_unreadable; file_malformed naming the line; limit_exceeded for more than 1 GiB or 2^22 lines with numbers.
 [[nodiscard]] std::vector<double> read_number_lines(const std::string& path, const LineRule& rule);
 
@@ -30,9 +31,9 @@ struct ScanPoints {
   bool robot_axes = false;  ///< true: scanner axes (x ahead, y left, z up); false: the model's coordinates
 };
 
-/// A binary PLY with a vertex for each ray that meets something, sorted by ring and step. Properties: x, y, z and range
-/// (floats; x, y and z are doubles in the coordinates of a model far from zero), object, triangle (within its object),
-/// ring and step (32 bits), and incidence (float, degrees).
+/// Returns a binary PLY with a vertex for each ray that meets something, sorted by ring and step. Properties: x, y, z
+/// and range (floats; x, y and z are doubles in the coordinates of a model far from zero), object, triangle (within its
+/// object), ring and step (32 bits), and incidence (float, degrees).
 [[nodiscard]] std::string points_ply(const ScanPoints& points);
 
 }  // namespace frontmost::cli

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batch files: JSON whose keys are names of options, so that the table of options describes both.
+// Batch files are JSON whose keys are names of options, so that the table of options describes flags and keys alike.
 //
-// The text is parsed twice: once to check limits, keeping nothing, and once to read. The library's parser with a
+// The text is parsed twice: once to check limits, without keeping values, and once to read. The library's parser with a
 // callback would go through all views again for each view.
 #include <fmt/format.h>
 #include <frontmost/files.h>
@@ -20,7 +20,8 @@ namespace {
 
 constexpr std::size_t most_views = 100'000;
 constexpr std::size_t most_values = 8'000'000;
-/// Limit of keys in one object. The number of options is smaller, and the search for repeated keys is linear.
+/// Limit of keys in one object. It exceeds the number of options, and is low because the search for repeated keys is
+/// linear.
 constexpr std::size_t most_keys = 256;
 /// Limit of nesting. Views, a view, its outputs, kinds of ids, a matrix and its rows need six levels. The JSON library
 /// copies and visits values by recursion, which very deep lists would crash.
@@ -75,7 +76,7 @@ class BatchCheck final : public nlohmann::json_sax<Json> {
   }
 
   const std::string &text_, &name_;
-  std::vector<std::size_t> keys_;  ///< so far, for each open object and list
+  std::vector<std::size_t> keys_;  ///< number of keys so far, for each open object and list
   std::size_t views_ = 0, values_ = 0;
   bool in_views_ = false;
 };
@@ -105,7 +106,7 @@ std::string number_text(const Json& value) {
   return value.is_number_integer() ? value.dump() : fmt::format("{}", value.get<double>());
 }
 
-/// The value as it would be written on a command line.
+/// Returns the value as it would be written on a command line.
 std::string text_of(const JsonPlace& place) {
   const Json& value = place.value;
   if (value.is_string()) return value.get<std::string>();
@@ -127,7 +128,7 @@ std::string text_of(const JsonPlace& place) {
   return text;
 }
 
-/// Refuses NUL characters, at which the system would end names.
+/// Throws an error for NUL characters, at which the system would end names.
 void refuse_nul(const JsonPlace& place, const std::string& text) {
   if (text.find('\0') != std::string::npos) place.refuse("must not hold a NUL character");
 }
@@ -162,7 +163,7 @@ bool belongs_to_view(const Option& option) {
 }
 bool belongs_to_outputs(const Option& option) { return option.group == Group::output || option.group == Group::look; }
 
-/// Applies all keys of an object. `belongs` tells which options it may hold.
+/// Applies all keys of an object. `belongs` tells which options the object may hold.
 template <class Belongs>
 void apply_object(const JsonPlace& place, const Belongs& belongs, std::vector<std::string_view> other_keys,
                   Settings& settings) {
@@ -213,7 +214,7 @@ std::vector<Settings> parse_batch(const std::string& text, const std::string& na
   if (!json.is_object()) root.refuse("must be an object with views");
   for (const auto& [key, value] : json.items()) {
     if (key != "views" && key != "outputs")
-      root.refuse(fmt::format("{}: is not known; views and outputs are", shortened(key)));
+      root.refuse(fmt::format("{}: is not known; the known keys are views and outputs", shortened(key)));
   }
   Settings common = defaults;
   if (json.contains("outputs")) apply_object({json.at("outputs"), name + ": outputs"}, belongs_to_outputs, {}, common);

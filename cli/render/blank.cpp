@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 7> clauses = {"has vertices that are not 
 
 using WorldCorners = std::array<glm::dvec3, 3>;
 
-/// Corners in eye space, with z replaced by the distance.
+/// Returns corners in eye space, with z replaced by the distance.
 WorldCorners in_eye(const std::array<glm::vec3, 3>& corners, const View& view) {
   WorldCorners result;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -51,11 +51,13 @@ bool is_outside(const WorldCorners& c, const Projection& p) {
          all(c, [&](const glm::dvec3& v) { return v.y > p.top * reach(v); });
 }
 
-/// With Culling::material, double-sided triangles count as one-sided. Double-sided ones only get here if they are tiny.
+/// Whether culling removes the triangle. With Culling::material, double-sided triangles count as one-sided; they only
+/// get here if they are tiny.
 bool is_culled(const WorldCorners& c, const View& view) {
   if (view.culling == Culling::none) return false;
   if (view.culling == Culling::both) return true;
-  // Positive if the corners run counter-clockwise as seen from the eye: y up, looking along +distance.
+  // `facing` is positive if the corners run counter-clockwise as seen from the eye, with y up and a view along
+  // +distance.
   const glm::dvec3 normal = glm::cross(c[1] - c[0], c[2] - c[0]);
   const double facing = view.projection.orthographic ? normal.z : glm::dot(normal, c[0]);
   return view.culling == Culling::front ? facing > 0 : facing < 0;
@@ -94,7 +96,7 @@ struct Alike {
   [[nodiscard]] bool holds(float value) const { return value >= low && value <= high; }
 };
 
-/// `scale` converts an sRGB value from 0 to 1 to the channel's scale.
+/// Returns the ranges of the colour channels. `scale` converts an sRGB value from 0 to 1 to the channel's scale.
 template <class Scale>
 std::array<Alike, 3> alike_to(const glm::vec3& background, const Scale& scale) {
   std::array<Alike, 3> alike{};
@@ -106,7 +108,8 @@ std::array<Alike, 3> alike_to(const glm::vec3& background, const Scale& scale) {
   return alike;
 }
 
-/// `stands_out` is called for pixels that see something.
+/// Whether less than one in `one_in` of the covered pixels differs from the background. stands_out(i) says whether
+/// pixel i differs. False if no pixel is covered.
 template <class StandsOut>
 bool too_few(std::span<const PrimitiveId> primitives, const StandsOut& stands_out) {
   std::size_t covered = 0, distinct = 0;

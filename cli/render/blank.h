@@ -31,7 +31,7 @@ class BlankReason {
   void gather(Ranks& ranks);
   /// Whether a triangle is in the frame, but covers no sample: because of its size, or of holes in its material.
   [[nodiscard]] bool has_small() const;
-  /// The reason as a clause: "all of the model is behind the camera".
+  /// Returns the reason as a clause: "all of the model is behind the camera".
   [[nodiscard]] std::string clause() const;
 
  private:
@@ -42,13 +42,13 @@ class BlankReason {
   std::array<std::uint64_t, cause_count> counts_{};
 };
 
-/// The reason why a picture is blank, as a clause. O(triangles). If some triangles are in the frame and materials have
-/// holes, it also renders a copy of the scene.
+/// Returns the reason why a picture is blank, as a clause. O(triangles). If some triangles are in the frame and
+/// materials have holes, it also renders a copy of the scene.
 [[nodiscard]] std::string blank_reason(const Surfaces& surfaces, const View& view, const Execution& execution);
 
 /// Whether the picture looks empty. A pixel stands out if one of its channels differs from the background's by more
-/// than 8 of 255 steps, about the limit of the eye on a screen. Nothing stands out if that holds for fewer than one in
-/// a thousand of the pixels whose first sample sees something. `primitives` holds those samples, or more. O(pixels),
+/// than 8 of 255 steps, about the limit of the eye on a screen. The picture looks empty if fewer than one in a thousand
+/// of the pixels whose first sample sees something stand out. `primitives` begins with these first samples. O(pixels),
 /// but ends when a thousandth stands out. False if nothing is seen.
 [[nodiscard]] bool nothing_stands_out(const Image& picture, std::span<const PrimitiveId> primitives,
                                       const glm::vec3& background);
@@ -60,7 +60,7 @@ class BlankReason {
 /// Whether all visible materials have opacity 0. False if nothing is seen.
 [[nodiscard]] bool is_invisible(const Surfaces& surfaces, std::span<const PrimitiveId> primitives);
 
-/// The warning about a picture in which nothing stands out.
+/// Returns the warning about a picture in which nothing stands out.
 [[nodiscard]] std::string contrast_warning(bool is_invisible);
 
 }  // namespace frontmost::cli

@@ -13,8 +13,8 @@ namespace frontmost::cli {
 
 class Environments {
  public:
-  /// The light of pictures, with its environment. \throws Error as load_environment() and Environment do, naming the
-  /// file.
+  /// Returns the light of pictures, with its environment. \throws Error as load_environment() and Environment do,
+  /// naming the file.
   [[nodiscard]] LightOptions light(const LightSettings& settings, const Execution& execution);
 
  private:

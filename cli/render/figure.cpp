@@ -31,8 +31,8 @@ Visible seen_at_centres(const RenderContext& context, View view) {
   return zbuffer(context.surfaces, view, context.execution);
 }
 
-/// The polygons in the colours of a picture with the same options. \throws Error that names the file and the option, if
-/// there are too many polygons.
+/// Returns the polygons in the colours of a picture with the same options. \throws Error that names the file and the
+/// option, if there are too many polygons.
 Figure figure_of(const Job& job, const RenderContext& context, const Sights& sights, const View& view) {
   const FigureOptions options = figure_options(job, context);
   std::optional<Visible> seen;

@@ -9,7 +9,7 @@
 
 namespace frontmost::cli {
 
-/// 64-bit hash of all added values, in order. Not for security: collisions can be constructed.
+/// A 64-bit hash of all added values, in order. It is not for security, because collisions can be constructed.
 class RunningHash {
  public:
   void add(std::uint64_t word);
@@ -27,10 +27,10 @@ struct FileHash {
   std::uint64_t bytes = 0, hash = 0;
   [[nodiscard]] bool operator==(const FileHash&) const = default;
 };
-/// \throws Error file_unreadable.
+/// Returns the length and hash of a file. \throws Error file_unreadable.
 [[nodiscard]] FileHash hash_of_file(const std::string& path);
 
-/// The hash as 16 hexadecimal digits, because JSON numbers above 2^53 lose bits in many readers.
+/// Returns the hash as 16 hexadecimal digits, because JSON numbers above 2^53 lose bits in many readers.
 [[nodiscard]] std::string digits_of_hash(std::uint64_t hash);
 
 }  // namespace frontmost::cli

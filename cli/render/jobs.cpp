@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plans the views and files of a run, and checks which options exclude each other: layers and streams, polygons and
-// depth buffers. A wish that cannot be met is an error that names both options; it never silently gives another file.
+// depth buffers. A request that cannot be met is an error that names both options; no other file is written instead.
 #include "cli/render/jobs.h"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ void check_layers(const Settings& settings, const Job& job) {
   const bool names_other = settings.run.method && *settings.run.method != Method::abuffer;
   if ((names_other || settings.view.depth.is_used) && (has_layers || settings.output.opacity < 1))
     throw UsageError(
-        "--opacity, --layers and --deep need the A-buffer; they exclude other methods and options of a depth buffer");
+        "--opacity, --layers and --deep need the A-buffer; leave out --method and the options of a depth buffer");
   if (settings.view.samples == 64 && settings.run.method != Method::abuffer)
     throw UsageError("--samples 64 needs --method abuffer");
 }
@@ -103,9 +103,9 @@ void check_files(const std::vector<Job>& jobs, const Settings& settings) {
   check_outputs(paths, inputs);
   const bool writes_stdout = std::find(paths.begin(), paths.end(), "-") != paths.end();
   if (writes_stdout && settings.run.json)
-    throw UsageError("--json and an output to - both write to standard output; give a file");
+    throw UsageError("--json and the output '-' both write to standard output; give a file");
   if (writes_stdout && settings.output.hash)
-    throw UsageError("--hash and an output to - both write to standard output; give a file");
+    throw UsageError("--hash and the output '-' both write to standard output; give a file");
 }
 
 }  // namespace

@@ -20,12 +20,13 @@ namespace frontmost::cli {
 
 /// One view, ready to be rendered.
 struct Job {
-  std::string name;        ///< {view}
-  std::size_t number = 0;  ///< in the batch file, from 0
+  std::string name;        ///< text for {view} in file names
+  std::size_t number = 0;  ///< number of the view in the batch file, from 0
   std::uint64_t said = 0;  ///< as Settings::said
   ViewSettings view;
   OutputSettings output;
-  std::vector<FileToWrite> files, layer_files;  ///< files of the front-most surface or of all; files of single layers
+  std::vector<FileToWrite> files, layer_files;  ///< files of the front-most surface or of all surfaces, and files of
+                                                ///< single layers
   std::vector<std::string> figures;             ///< pictures of polygons
   std::string difference;                       ///< path of the difference to the reference; empty: no reference
   std::shared_ptr<const Image> reference;       ///< contents of output.reference; null: to be read again
@@ -35,13 +36,13 @@ struct Job {
 /// \throws UsageError and Error as plan_outputs() and check_outputs() do; errors in the batch file name the place.
 [[nodiscard]] std::vector<Job> plan_jobs(const Settings& settings);
 
-/// All files that the jobs write.
+/// Returns all files that the jobs write.
 [[nodiscard]] std::vector<std::string> output_paths(const std::vector<Job>& jobs);
 
-/// The settings of each view of a batch file. \throws UsageError naming file and place; Error file_unreadable, or
-/// limit_exceeded for more than 64 MiB.
+/// Returns the settings of each view of a batch file. \throws UsageError naming file and place; Error file_unreadable,
+/// or limit_exceeded for more than 64 MiB.
 [[nodiscard]] std::vector<Settings> read_batch(const std::string& path, const Settings& defaults);
-/// The settings of each view from a batch file's text; `name` stands for the file in messages.
+/// Returns the settings of each view from a batch file's text. `name` stands for the file in messages.
 [[nodiscard]] std::vector<Settings> parse_batch(const std::string& text, const std::string& name,
                                                 const Settings& defaults);
 

@@ -15,7 +15,7 @@
 namespace frontmost::cli {
 namespace {
 
-// A hash as text, because JSON numbers above 2^53 lose bits in many readers.
+// Returns a hash as text, because JSON numbers above 2^53 lose bits in many readers.
 std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
 Json seen_json(const Seen& seen, const View& view) {
@@ -57,7 +57,7 @@ Json depth_json(const DepthSettings& settings) {
           {"reversed", state.nearer_is_greater}};
 }
 
-/// The camera of a view. Entries that only pinholes have are left out for other cameras.
+/// Returns the camera of a view. Entries that only pinholes have are left out for other cameras.
 Json view_camera_json(const ViewResult& result, const glm::dvec3& origin) {
   Json json = camera_json(result.view, result.target, origin);
   if (result.camera_model == CameraModel::pinhole) return json;
@@ -82,7 +82,7 @@ Json light_json(const LightSettings& light) {
   return json;
 }
 
-/// Options that determine the look of a view's pictures, with their defaults.
+/// Returns the options that determine the look of a view's pictures, with their defaults.
 Json look_json(const OutputSettings& output) {
   constexpr std::string_view shadings[] = {"lit", "flat", "normals", "depth", "ids", "uv"};
   constexpr std::string_view lights[] = {"key", "file", "both", "none"}, shadows[] = {"off", "map", "rays"};
@@ -124,7 +124,7 @@ bool has_only_figures(const std::vector<ViewResult>& views) {
   return has_any;
 }
 
-/// The method that made the picture.
+/// Returns the name of the method that made the picture.
 std::string_view method_name(const Settings& settings, const ModelFacts& model, const std::vector<ViewResult>& views) {
   const auto is_pinhole = [](const ViewResult& view) { return view.camera_model == CameraModel::pinhole; };
   if (!views.empty() && std::none_of(views.begin(), views.end(), is_pinhole)) return "raycast";

@@ -34,11 +34,11 @@ struct ModelFacts {
   std::optional<std::size_t> finished_before = std::nullopt;  ///< views of a shard that an earlier run finished
 };
 
-/// The report of one view or of a batch. The facts of a single view are at the top level, those of a batch under
-/// "views". Precondition: exactly one job for each view.
+/// Returns the report of one view or of a batch. The facts of a single view are at the top level, those of a batch
+/// under "views". Precondition: exactly one job for each view.
 [[nodiscard]] Json render_json(const Settings& settings, const ModelFacts& model, const std::vector<Job>& jobs,
                                const std::vector<ViewResult>& views, const RunTimings& timings);
-/// One line "what HASH path" for each result, "visible HASH" first. Lines of a batch begin with "view:".
+/// Returns a line "what HASH path" for each result, "visible HASH" first. Lines of a batch begin with "view:".
 [[nodiscard]] std::string hash_lines(const std::vector<ViewResult>& views, bool is_batch);
 
 }  // namespace frontmost::cli

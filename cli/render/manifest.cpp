@@ -32,7 +32,7 @@ Json json_of(const FinishedView& view) {
   return {{"view", view.number}, {"name", view.name}, {"key", digits_of_hash(view.key)}, {"files", std::move(files)}};
 }
 
-/// One line of JSON. Invalid UTF-8 in file names is replaced, because JSON cannot hold it.
+/// Returns a line of JSON. Invalid UTF-8 in file names is replaced, because JSON cannot hold it.
 std::string line_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 std::uint64_t number_in(const Json& json) {
@@ -65,7 +65,7 @@ Manifest head_in(const Json& json) {
           {}};
 }
 
-/// The result of `read` for the line; empty if the line is malformed.
+/// Returns the result of `read` for the line, or nothing if the line is malformed.
 template <class Read>
 auto read_line(std::string_view line, const Read& read) -> std::optional<decltype(read(Json()))> {
   try {

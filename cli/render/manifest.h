@@ -5,8 +5,8 @@
 //   {"view": 2, "name": "eye-2", "key": "81fa...", "files": [{"path": "eye-2.png", "bytes": 8123, "hash": "03bb..."}]}
 //   {"view": 18, ...
 //
-// A line is written when all files of its view are complete. So however a run ends, noted views are finished, and a
-// truncated line counts as none.
+// A line is written when all files of its view are complete. So the views in a manifest are finished, however the run
+// has ended. A truncated line counts as none.
 #pragma once
 
 #include <optional>
@@ -37,20 +37,20 @@ struct Manifest {
   std::vector<FinishedView> finished;
 };
 
-/// The manifest's name, as in "engine.views.3-of-16.jsonl" for engine.glb and views.json.
+/// Returns the manifest's name, as in "engine.views.3-of-16.jsonl" for engine.glb and views.json.
 [[nodiscard]] std::string manifest_name(const std::string& stem, const Shard& shard);
-/// The stem of a manifest's name, without "3-of-16"; empty if it is no manifest's name.
+/// Returns the stem of a manifest's name, without "3-of-16", or nothing if no manifest has such a name.
 [[nodiscard]] std::optional<std::string> stem_of_manifest(const std::string& file_name);
 
 /// Reads a manifest and skips malformed lines. \throws Error file_malformed if the file does not begin as a manifest
 /// does, so that no other file is overwritten; file_unreadable.
 [[nodiscard]] Manifest read_manifest(const std::string& path);
-/// \throws Error file_unwritable.
+/// Writes a whole manifest. \throws Error file_unwritable.
 void write_manifest(const Manifest& manifest, const std::string& path);
 /// Appends a line to an existing manifest. \throws Error file_unwritable.
 void append_to_manifest(const FinishedView& view, const std::string& path);
 
-/// Empty if all files of the view are unchanged in `folder`; otherwise the name of one that is not.
+/// Returns nothing if all files of the view are unchanged in `folder`, otherwise the name of a changed file.
 [[nodiscard]] std::optional<std::string> changed_file(const FinishedView& view, const std::string& folder);
 
 }  // namespace frontmost::cli

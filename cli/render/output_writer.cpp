@@ -23,7 +23,7 @@ bool is_picture_alone(const FileToWrite& file) {
   return file.kinds.size() == 1 && file.kinds.front() == OutputKind::picture;
 }
 
-/// The picture without alpha, because PFM holds three channels.
+/// Returns the picture without alpha, because PFM holds three channels.
 Image without_alpha(const Image& picture) {
   Image copy = picture;
   if (copy.channels.size() == 4) copy.channels.pop_back();
@@ -50,7 +50,7 @@ void note(const Image& part, OutputKind kind, const FileToWrite& file, const Out
   if (source.job.output.hash) one.hash = content_hash(part);
 }
 
-/// The channels of all kinds that the file holds.
+/// Returns the channels of all kinds that the file holds.
 Image compose(const FileToWrite& file, const OutputSource& source, ViewResult& result) {
   Image image;
   for (const OutputKind kind : file.kinds) {
@@ -99,7 +99,7 @@ void write(const FileToWrite& file, const OutputSource& source, ViewResult& resu
   }
 }
 
-/// Errors about different sizes or channels name the reference.
+/// Compares two pictures. Errors about different sizes or channels name the reference.
 Comparison compared(const Image& picture, const Image& reference, const Job& job, const Execution& execution) {
   try {
     return compare(picture, reference, job.output.reference_threshold, execution);
@@ -113,7 +113,8 @@ constexpr int rows_kept = 2;
 
 glm::ivec2 room(const glm::ivec2& terminal) { return {std::max(terminal.x, 1), std::max(terminal.y - rows_kept, 1)}; }
 
-/// Whether the terminal announces true colour in COLORTERM. Others get the 256-colour palette, which all support.
+/// Whether the terminal announces true colour in COLORTERM. Other terminals get the 256-colour palette, which all
+/// support.
 bool has_true_color() {
   const char* const value = std::getenv("COLORTERM");
   return value && (std::string_view(value) == "truecolor" || std::string_view(value) == "24bit");

@@ -48,13 +48,14 @@ inline constexpr std::string_view figure_name = "figure";
 /// \throws Error limit_exceeded for more polygons than the settings allow.
 void write_figures(const Job& job, const RenderContext& context, const Sights& sights, ViewResult& result);
 
-/// Reads the references of all jobs, so that an unreadable one is reported before anything is drawn. References of a
-/// long batch may not fit into memory, so pictures beyond 2^26 pixels are dropped and read again later. \throws Error
-/// if one cannot be read.
+/// Reads the references of all jobs, so that an unreadable reference is reported before anything is drawn. References
+/// of a long batch may not fit into memory, so pictures beyond 2^26 pixels are dropped and read again later. \throws
+/// Error if a reference cannot be read.
 void read_references(std::vector<Job>& jobs);
 
-/// Compares a picture that is not written yet. Writes the difference picture if they differ by more than the threshold,
-/// which is no error here. \throws Error if the reference cannot be read, or has another size or other channels.
+/// Compares a picture that is not written yet with the reference. Writes the difference picture if the pictures differ
+/// by more than the threshold, which is no error here. \throws Error if the reference cannot be read, or has another
+/// size or other channels.
 [[nodiscard]] ReferenceResult compare_with_reference(const Image& picture, const Job& job, const Execution& execution);
 
 /// Fits the picture to the terminal, and makes its background transparent, unless the user chose otherwise.

@@ -50,7 +50,7 @@ std::string text_of(const Ranks::Message& message) {
   return {reinterpret_cast<const char*>(message.data()), message.size()};
 }
 
-/// Hash of all settings that determine the messages between ranks.
+/// Returns a hash of all settings that determine the messages between ranks.
 std::uint64_t hash_of(const Settings& settings) {
   RunningHash hash;
   hash.add(settings.said);
@@ -62,7 +62,7 @@ std::uint64_t hash_of(const Settings& settings) {
   return hash.value();
 }
 
-/// Checks that all ranks run the same command; others would send messages that do not fit.
+/// Checks that all ranks run the same command. Ranks with another command would send messages that do not fit.
 void check_same_command(const Settings& settings, Ranks& ranks) {
   const std::uint64_t hash = hash_of(settings);
   std::uint64_t ends[2] = {hash, ~hash};
@@ -72,8 +72,8 @@ void check_same_command(const Settings& settings, Ranks& ranks) {
       "--mpi: the ranks have different command lines or different versions of frontmost; start all of them alike");
 }
 
-/// The current exception as the program would report it. Call in a handler. Interruptions are rethrown, because the
-/// signal that stops one rank stops all.
+/// Returns the current exception as the program would report it. Must be called in a handler. Interruptions are
+/// rethrown, because the signal that stops one rank stops all.
 RunFailure current_failure(const Settings& settings) {
   try {
     throw;
@@ -103,7 +103,7 @@ int run_carefully(const Settings& settings, CarefulRanks& ranks, const std::func
     failure = ranks.fail(mine);
   }
   if (ranks.number() == 0) complain(failure.message);
-  // The launcher ends all ranks when one ends with an error, so all wait until the message is printed.
+  // The launcher ends all ranks when one ends with an error, so all ranks wait until the message is printed.
   ranks.part();
   return failure.status;
 }

@@ -38,36 +38,36 @@ class FailedElsewhere : public std::exception {
   RunFailure failure_;
 };
 
-/// Ranks that check before each operation that none has failed, so that none waits in vain. While they wait, --timeout
-/// mentions it.
+/// Ranks that check before each operation that none of them has failed, so that none waits in vain. While they wait,
+/// the message of --timeout mentions this.
 class CarefulRanks final : public Ranks {
  public:
   explicit CarefulRanks(std::unique_ptr<Ranks> ranks) : ranks_(std::move(ranks)) {}
 
   [[nodiscard]] int number() const override { return ranks_->number(); }
   [[nodiscard]] int count() const override { return ranks_->count(); }
-  /// \throws FailedElsewhere, as do gather(), broadcast() and meet().
+  /// Keeps the greatest of each value over all ranks. \throws FailedElsewhere, as do gather(), broadcast() and meet().
   void keep_greatest(std::span<std::uint64_t> values) override;
   std::vector<Message> gather(Message message) override;
   Message broadcast(Message message) override;
   /// Waits until all ranks call it.
   void meet();
-  /// Tells the other ranks about a failure, when they call one of the above. \returns the failure of the lowest failed
-  /// rank.
+  /// Tells the other ranks about a failure, when they call one of the functions above. \returns the failure of the
+  /// lowest failed rank.
   RunFailure fail(const RunFailure& failure);
   /// Waits until all ranks call it, whether they failed or not.
   void part();
 
  private:
-  /// \returns the failure of the lowest failed rank; status exit_done if there is none.
+  /// Waits until all ranks call it. \returns the failure of the lowest failed rank; status exit_done if there is none.
   RunFailure agree(const RunFailure& mine);
   void check();
 
   std::unique_ptr<Ranks> ranks_;
 };
 
-/// Replaces {rank} in a model's name by each number below `count`, to give a file for each rank. All ranks read a name
-/// without {rank}. `settings` hold all names afterwards. \returns the readers.
+/// Replaces {rank} in a model's name by each number below `count`, so that each rank reads a file of its own. All ranks
+/// read a name without {rank}. `settings` hold all names afterwards. \returns the readers.
 [[nodiscard]] std::vector<int> name_files_of_ranks(int count, Settings& settings);
 
 /// Runs on all ranks that --mpi joins. If one fails, all end, and rank 0 prints the reason.

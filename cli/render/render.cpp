@@ -45,14 +45,15 @@ bool lets_light_through(const Scene& scene) {
                      [](const Material& m) { return m.is_see_through(); });
 }
 
-/// A model that is a picture's name, as in "render model.obj out.png", which lacks "-o".
+/// Returns a model that is a picture's name, as in "render model.obj out.png", which lacks "-o".
 std::optional<std::string> picture_among_models(const Settings& settings) {
   for (const std::string& model : settings.more_models)
     if (format_by_suffix(model) || is_figure(model)) return model;
   return std::nullopt;
 }
 
-/// Shows the picture on the terminal if no other result is asked for. Output of MPI's ranks goes to no terminal.
+/// Whether the picture is shown on the terminal, because no other result is asked for. If so, prepares the jobs. Output
+/// of MPI's ranks goes to no terminal.
 bool shows_on_terminal(const Settings& settings, std::vector<Job>& jobs) {
   if (has_result(settings, jobs)) return false;
   const std::optional<glm::ivec2> terminal = settings.run.mpi ? std::nullopt : output_terminal();
@@ -86,7 +87,7 @@ int status_of(const std::vector<ViewResult>& results) {
   return std::any_of(results.begin(), results.end(), differs) ? exit_differs : exit_done;
 }
 
-/// State that rendering of models and of streams share.
+/// The state of a run, of a model or of a stream.
 struct Run {
   const Settings& settings;
   std::vector<Job> jobs;
@@ -114,7 +115,7 @@ bool is_drawn_often(const Run& run) {
   return count * std::size_t(run.settings.run.repeat) > 1;
 }
 
-/// A warning about the model's own lights, if a lit picture ignores them and the user may not know it.
+/// Returns a warning about the model's own lights, if a lit picture ignores them and the user may not know it.
 std::optional<std::string> lights_warning(const Scene& scene, const Job& job) {
   if (job.output.shading != Shading::lit || !writes_colors(job)) return std::nullopt;
   if (scene.lights.empty() && job.output.lights == Lights::file)
@@ -162,7 +163,7 @@ void report(const Settings& settings, const ModelFacts& model, const std::vector
   if (!settings.run.json) print(hash_lines(results, settings.run.batch.has_value()));
 }
 
-/// The reader's warnings, and one warning each about framing and lights, for any of the views.
+/// Returns the reader's warnings, and at most one warning each about framing, lights and up axis, which it also prints.
 std::vector<std::string> model_warnings(const std::vector<Job>& jobs, const Surfaces& surfaces,
                                         const Settings& settings, Progress& progress) {
   std::vector<std::string> warnings = surfaces.scene().warnings;
@@ -172,7 +173,7 @@ std::vector<std::string> model_warnings(const std::vector<Job>& jobs, const Surf
     warnings.push_back(*warning);
     return true;
   };
-  // Framing is the same for all views that are fitted so.
+  // Framing is the same for all views that are fitted to the subject.
   const auto fitted =
       std::find_if(jobs.begin(), jobs.end(), [](const Job& job) { return is_fitted_to_subject(job.view); });
   if (fitted != jobs.end()) tell_once(framing_warning(fitted->view, surfaces));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Panoramas and fisheyes: rays instead of a view, ranges instead of depths. The other steps are those of a pinhole,
-// with the maps that such cameras support, at one ray a pixel.
+// Panoramas and fisheyes have rays instead of a view, and ranges instead of depths. The other steps are those of a
+// pinhole. Of the maps, these cameras support some, with one ray per pixel.
 #include <fmt/format.h>
 #include <frontmost/pictures.h>
 #include <frontmost/raycast.h>
@@ -21,7 +21,7 @@ namespace {
 constexpr double half_turn_degrees = 180;
 constexpr glm::ivec2 panorama_resolution{2048, 1024}, fisheye_resolution{1024, 1024};
 
-/// The camera with the pose that the same options give a pinhole.
+/// Returns the camera, with the pose that a pinhole with the same options has.
 RayCamera camera_of(const ViewResult& result, int samples) {
   const View& view = result.view;
   if (result.camera_model == CameraModel::panorama)
@@ -87,7 +87,8 @@ Seen summary_around(const RayScene& rays, const RangeScan& around) {
   return seen;
 }
 
-/// Hits of a job's rays: those of the picture, and one at each pixel's centre, which may be the same.
+/// Hits of a job's rays: those of the picture, and one at each pixel's centre. One scan serves both if the rays are the
+/// same.
 struct SightsAround {
   std::optional<RangeScan> picture, middles;
 

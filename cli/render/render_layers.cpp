@@ -21,7 +21,7 @@ std::vector<Visible> layers_of(const Job& job, const RenderContext& context, con
   return visible_layers(context.surfaces, view, count, {0, job.output.opacity}, context.execution);
 }
 
-/// One layer with its files.
+/// A layer with its files.
 struct LayerFiles {
   Job job;
   const Visible* picture;  ///< null if no file shows it

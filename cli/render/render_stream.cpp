@@ -28,7 +28,7 @@ void check_one_pass(const Job& job, const StreamNeeds& needs, const Stream& stre
   if (needs.key_light) refuse("shadows need another pass; use --no-shadows, or --shading flat, depth, ids or uv");
 }
 
-/// A scene with these bounds, which suffice for framing.
+/// Returns a scene with these bounds, which suffice for framing.
 Scene scene_of(const Box& bounds, const glm::dvec3& origin) {
   Scene scene;
   scene.origin = origin;
@@ -40,7 +40,7 @@ Scene scene_of(const Box& bounds, const glm::dvec3& origin) {
   return scene;
 }
 
-/// The view without a model, which has the direction, shape and size of the final view.
+/// Returns the view without a model. It has the direction, shape and size of the final view.
 View view_of_nothing(const Job& job, const Stream& stream, const Execution& execution) {
   Scene nothing;
   nothing.up = stream.scene().up;
@@ -51,7 +51,7 @@ View view_of_nothing(const Job& job, const Stream& stream, const Execution& exec
   return resolve_view(settings, Surfaces(nothing, execution));
 }
 
-/// The camera that the whole model determines.
+/// Returns the camera that the whole model determines.
 View find_view(const Job& job, const View& of_nothing, Stream& stream, const Execution& execution) {
   if (!depends_on_model(job.view)) return of_nothing;
   const Scene outline = stream.outline(of_nothing, FrameOptions().margin, execution);

@@ -14,7 +14,7 @@ namespace frontmost::cli {
 /// Whether a view needs rays: for the method, the camera or shadows.
 [[nodiscard]] bool needs_index(const Job& job, const RunSettings& run);
 
-/// render_view() with triangles made for the view. Precondition: is_tessellated().
+/// Does what render_view() does, with triangles made for the view. Precondition: is_tessellated().
 [[nodiscard]] ViewResult render_tessellated_view(const Job& job, const RenderContext& context);
 
 }  // namespace frontmost::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One view. The picture has several samples a pixel. Maps, the report and the hash have one, at pixel centres, so that
-// they do not depend on the picture's antialiasing.
+// Renders one view. The picture has several samples per pixel. Maps, the report and the hash have one, at pixel
+// centres, so that they do not depend on the picture's antialiasing.
 #include "cli/render/render_view.h"
 
 #include <fmt/format.h>
@@ -83,7 +83,7 @@ Sights look(const Job& job, const RenderContext& context, ViewResult& result) {
   return sights;
 }
 
-/// The content hash, by the stream's own ids if the surfaces are an excerpt of a stream.
+/// Returns the content hash, by the stream's own ids if the surfaces are an excerpt of a stream.
 std::uint64_t hash_of(const Sights& sights) {
   if (!sights.stream_ids) return content_hash(sights.for_maps().visible);
   Visible visible = sights.for_maps().visible;
@@ -121,7 +121,7 @@ void warn_if_blank(const Sights& sights, const RenderContext& context, ViewResul
   result.warnings.push_back("nothing is in view: " + reason);
 }
 
-/// Warns about models hardly wider than a pixel: seen edge-on, or long ones in small pictures.
+/// Warns about models that are hardly wider than a pixel: seen edge-on, or long and thin in a small picture.
 void warn_if_thread(const Sights& sights, ViewResult& result) {
   constexpr double thinnest = 2.5;  // pixels, on average
   constexpr int shortest = 32;
@@ -148,7 +148,7 @@ void warn_if_thread(const Sights& sights, ViewResult& result) {
                   length, double(count) / length));
 }
 
-/// 64 samples are sub-samples of the A-buffer; visibility has one sample then.
+/// Whether the picture has the 64 sub-samples of the A-buffer. Visibility then has one sample.
 bool is_fine(const Job& job) { return job.view.samples == 64; }
 
 }  // namespace

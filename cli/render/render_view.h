@@ -31,7 +31,7 @@ namespace frontmost::cli {
 /// Times in milliseconds.
 struct Timings {
   std::vector<double> visible;         ///< one for each repetition (--repeat)
-  std::optional<double> visible_maps;  ///< for the maps' single sample, if the picture has more
+  std::optional<double> visible_maps;  ///< for the maps, if the picture has several samples
   double shade = 0, save = 0;
 };
 
@@ -55,7 +55,7 @@ struct Result {
 };
 
 struct ReferenceResult {
-  std::string path, difference_path;  ///< difference_path is empty if they do not differ
+  std::string path, difference_path;  ///< difference_path is empty if the pictures do not differ
   double largest_difference = 0, mean_difference = 0;
   std::uint64_t differing_pixels = 0;
   bool passed = false;
@@ -89,7 +89,7 @@ struct RenderContext {
   const RunSettings& run;
   Execution execution;
   bool keep_picture = false;
-  const RayIndex* index = nullptr;  ///< if the method, cameras or shadows need one
+  const RayIndex* index = nullptr;  ///< null unless the method, cameras or shadows need one
   bool by_rays = false;             ///< whether the method is raycast
   /// Surfaces whose bounds determine the camera, if not `surfaces`.
   const Surfaces* framed = nullptr;
@@ -102,14 +102,15 @@ struct RenderContext {
 struct Sights {
   std::optional<SeenView> picture, maps;
   std::optional<VisiblePixels> pixels;  ///< replaces `picture` if only a picture in bytes is needed
-  bool shared = false;                  ///< the maps use the visibility of the picture
-  /// For streams: the triangles' numbers by id of the surfaces, and the surfaces that throw shadows. Both borrowed.
+  bool shared = false;                  ///< whether the maps use the visibility of the picture
+  /// For streams: the number of each triangle in the stream, by id of the surfaces; and what the key light sees. Both
+  /// are borrowed.
   const std::vector<PrimitiveId>* stream_ids = nullptr;
   const Visible* seen_by_light = nullptr;
   const BlankReason* blank_reason = nullptr;  ///< counted during the stream's passes; borrowed
 
   [[nodiscard]] const SeenView& for_maps() const { return shared ? *picture : *maps; }
-  /// Precondition: there is a picture.
+  /// Returns the input of the shader. Precondition: there is a picture.
   [[nodiscard]] ShadeInput shade_input(const RayIndex* index) const {
     return pixels ? ShadeInput{.pixels = &*pixels, .seen_by_light = seen_by_light, .index = index}
                   : ShadeInput{.visible = &picture->visible, .seen_by_light = seen_by_light, .index = index};
@@ -126,22 +127,22 @@ struct SightPlan {
   std::optional<int> picture_samples;
   bool maps = false, shared = false;
 };
-/// Only the size of `view` is used.
+/// Plans the visibility for a job. Only the size of `view` is used.
 [[nodiscard]] SightPlan plan_sights(const Job& job, const RunSettings& run, bool keep_picture, const View& view);
 
-/// The views to determine visibility for: the picture's, then the maps', unless they are the same.
+/// Returns the views to determine visibility for: the picture's, then the maps', unless they are the same.
 [[nodiscard]] std::vector<View> views_of(const View& view, const SightPlan& plan);
 
 /// Shades, and writes all files of the job. Precondition: `result` holds the view.
 void finish_view(const Job& job, const RenderContext& context, const Sights& sights, ViewResult& result);
 
-/// The number of samples of a picture: the user's choice, or 4, or fewer if the picture is too large.
+/// Returns the number of samples of a picture: the user's choice, or 4, or fewer if the picture is too large.
 [[nodiscard]] int picture_samples(const Job& job, const View& view);
 /// Whether the job's picture has the light that moves with the camera.
 [[nodiscard]] bool has_key_light(const Job& job);
-/// The shading options of the job's picture.
+/// Returns the shading options of the job's picture.
 [[nodiscard]] ShadeOptions shade_options(const Job& job, const RenderContext& context);
-/// The map of a kind: one channel, or a few that belong together.
+/// Returns the map of a kind: one channel, or a few that belong together.
 [[nodiscard]] Image map_of(OutputKind kind, const Job& job, const RenderContext& context, const Sights& sights);
 
 /// Counts pixels, in total and by object, in a map of objects.
@@ -150,10 +151,10 @@ void count_objects(const Surfaces& surfaces, const Image& objects, Seen& seen);
 /// Determines visibility, shades, and writes all files of the job.
 [[nodiscard]] ViewResult render_view(const Job& job, const RenderContext& context);
 
-/// \throws UsageError for outputs that only a pinhole supports.
+/// Checks the outputs of a camera that is no pinhole. \throws UsageError for outputs that only a pinhole supports.
 void check_outputs_around(const Job& job);
 
-/// render_view() for a job whose camera is no pinhole. Precondition: the context has an index.
+/// Does what render_view() does, for a job whose camera is no pinhole. Precondition: the context has an index.
 [[nodiscard]] ViewResult render_around(const Job& job, const RenderContext& context);
 
 /// Context of a streamed view, available before anything has been read.
@@ -165,9 +166,9 @@ struct StreamContext {
   Ranks* ranks = nullptr;  ///< ranks of the stream, which render together
 };
 
-/// render_view() for a stream. Passes: one to find the camera, unless it is given; one for visibility; and one for
-/// shadows and smooth normals, if the picture has them. With several ranks, the first one writes the files. \throws
-/// Error unsupported if standard input would have to be read again.
+/// Does what render_view() does, for a stream. Passes: one to find the camera, unless it is given; one for visibility;
+/// and one for shadows and smooth normals, if the picture has them. With several ranks, the first one writes the files.
+/// \throws Error unsupported if standard input would have to be read again.
 [[nodiscard]] ViewResult render_streamed_view(const Job& job, Stream& stream, const StreamContext& context);
 
 }  // namespace frontmost::cli

@@ -24,7 +24,7 @@ std::set<std::string> paths_of(const Job& job) {
   return {paths.begin(), paths.end()};
 }
 
-/// Hash of the model's contents; its path does not count.
+/// Returns a hash of the model's contents. Its path does not count.
 std::uint64_t hash_of_model(const Settings& settings, const std::vector<std::filesystem::path>& used) {
   RunningHash hash;
   hash.add(std::string_view(FRONTMOST_VERSION));
@@ -66,7 +66,7 @@ class ViewHasher {
   std::map<std::string, std::uint64_t> environments_;
 };
 
-/// Finished views in a manifest. Empty if the file is missing or empty, as a power failure may leave it.
+/// Returns the finished views in a manifest, or none if the file is missing or empty, as a power failure may leave it.
 std::vector<FinishedView> noted_in(const std::string& path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
@@ -86,11 +86,11 @@ void check_shard(const Settings& settings, const std::vector<Job>& jobs) {
     const auto refuse = [&](const char* why) { throw UsageError(fmt::format("--shard: view {} {}", job.name, why)); };
     const std::set<std::string> paths = paths_of(job);
     if (paths.empty())
-      refuse(
-          "has no output file, so that a repeated run could not skip it; give an output, such as -o, --depth or --ids");
+      refuse("has no output file; give one (-o, --depth or --ids), so that a repeated run can skip the view");
     if (paths.count("-"))
-      refuse("is written to standard output, so that a repeated run could not skip it; give a file");
-    if (job.output.reference) refuse("has a --reference, which a repeated run would not compare again; leave it out");
+      refuse("is written to standard output; give a file, so that a repeated run can skip the view");
+    if (job.output.reference)
+      refuse("has a --reference; leave it out, because a repeated run skips the view and its comparison");
   }
 }
 

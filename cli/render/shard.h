@@ -12,21 +12,21 @@
 
 namespace frontmost::cli {
 
-/// \throws UsageError for settings whose views cannot be noted or recognized as finished: no batch file, a model from
-/// standard input, views without files, references.
+/// Checks the settings of a shard. \throws UsageError for settings whose views cannot be noted or recognized as
+/// finished: no batch file, a model from standard input, views without files, references.
 void check_shard(const Settings& settings, const std::vector<Job>& jobs);
-/// The path of the shard's manifest: in the current folder, like files with relative names.
+/// Returns the path of the shard's manifest: in the current folder, like files with relative names.
 [[nodiscard]] std::string manifest_path(const Settings& settings);
 
 class ShardRun {
  public:
-  /// `jobs` holds the whole batch; `used` are the model's files, which have been read. Reads the notes of an earlier
-  /// run, and writes a manifest of those that are still valid.
+  /// Reads the manifest of an earlier run, and writes a manifest of the views that are still valid. `jobs` holds the
+  /// whole batch; `used` are the model's files, which have been read.
   ShardRun(const Settings& settings, const std::vector<Job>& jobs, const std::vector<std::filesystem::path>& used);
 
-  /// Removes jobs of other shards and finished ones.
+  /// Returns the jobs without those of other shards and those that are finished.
   [[nodiscard]] std::vector<Job> remaining(std::vector<Job> jobs) const;
-  /// The number of the shard's jobs that an earlier run finished.
+  /// Returns the number of the shard's jobs that an earlier run finished.
   [[nodiscard]] std::size_t finished_count() const { return finished_count_; }
   /// Notes that all files of the job are complete.
   void note(const Job& job) const;

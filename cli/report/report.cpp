@@ -79,7 +79,7 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-/// Suggestions for an unknown name: names that contain it, or the nearest one.
+/// Returns suggestions for an unknown name: known names that contain it, or the nearest one.
 std::string names_like(std::string_view wanted, const std::vector<std::string_view>& known) {
   constexpr std::size_t most_named = 5;
   std::vector<std::string> near;
@@ -115,7 +115,7 @@ void check(const Settings& settings, const std::vector<std::string>& outputs) {
   if (report.page && *report.page != "-" && !report.page->ends_with(".html") && !report.page->ends_with(".htm"))
     throw UsageError(*report.page + ": the report is a page; use .html");
   if (settings.run.json && std::find(outputs.begin(), outputs.end(), "-") != outputs.end())
-    throw UsageError("--json and an output to - both write to standard output; give a file");
+    throw UsageError("--json and the output '-' both write to standard output; give a file");
 }
 
 }  // namespace

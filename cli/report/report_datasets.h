@@ -25,7 +25,7 @@ class DatasetFiles {
   void begin(const Settings& settings, const Scene& scene);
   /// Adds the next view. `name` is the text for {view}, if there are several.
   void add(const ReportRun& run, const std::optional<std::string>& name, const Execution& execution);
-  /// \returns the paths of all files.
+  /// Ends writing. \returns the paths of all files.
   [[nodiscard]] std::vector<std::string> finish();
 
  private:

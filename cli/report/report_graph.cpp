@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The graph of hiding: objects that nothing hides are at the top, and each object is below those that hide it.
 //
-// Rows are ranks of that order, split if they are too long. Objects that hide each other in a cycle share a rank, and
-// lines between them are dashed.
+// A row is a rank of that order, or a part of a rank that is too long. Objects that hide each other in a cycle share a
+// rank, and lines between them are dashed.
 #include <fmt/format.h>
 
 #include <algorithm>

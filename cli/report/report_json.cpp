@@ -33,7 +33,7 @@ Json places_json(const TrianglePlaces& triangles) {
           {"in_view", triangles.in_view}};
 }
 
-/// A remedy, with the numbers of its kind.
+/// Returns a remedy, with the numbers of its kind.
 Json remedy_json(const Remedy& remedy) {
   if (remedy.kind == RemedyKind::none) return nullptr;
   Json json = {{"kind", name(remedy.kind)}};

@@ -79,7 +79,7 @@ std::string name_of(const ReportRun& run, std::uint32_t object) {
   return printable_name(run.scene().instances[object].name);
 }
 
-/// The map of objects, as runs: object + 1, and the number of pixels.
+/// Returns the map of objects, as runs. A run is the object + 1, and the number of pixels.
 Json map_json(const ReportRun& run) {
   const Image ids = id_image(run.surfaces, run.visible, IdKind::object);
   Json runs = Json::array();
@@ -94,7 +94,7 @@ Json map_json(const ReportRun& run) {
   return runs;
 }
 
-/// A mask as runs: the numbers of outside, hidden and visible pixels, in turn.
+/// Returns a mask as runs: the numbers of outside, hidden and visible pixels, in turn.
 Json mask_json(const PixelMask& mask) {
   Json runs = Json::array();
   auto kind = int(MaskPixel::outside);
@@ -156,7 +156,7 @@ std::string table_of(const ReportRun& run) {
   return text + "</tr></thead><tbody>\n" + rows_of(run) + "</tbody></table></div>\n";
 }
 
-/// A paragraph about nodes that the file hides; empty if there are none.
+/// Returns a paragraph about nodes that the file hides, or nothing if there are none.
 std::string hidden_by_file(const ReportRun& run) {
   std::string names;
   for (const std::string& name : run.scene().source.hidden) names += (names.empty() ? "" : ", ") + printable_name(name);

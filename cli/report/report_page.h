@@ -6,10 +6,10 @@
 
 namespace frontmost::cli {
 
-/// The script that makes the page interactive, without its element.
+/// Returns the script that makes the page interactive, without the <script> tags around it.
 [[nodiscard]] std::string_view report_script();
-/// The graph of hiding as an SVG element, for the pairs with the most hidden samples. Hiding objects are above hidden
-/// ones. Empty if nothing is hidden.
+/// Returns the graph of hiding as an SVG element, for the pairs with the most hidden samples, or an empty text if
+/// nothing is hidden. Hiding objects are above hidden ones.
 [[nodiscard]] std::string report_graph(const ReportRun& run);
 
 /// Writes the whole page, or nothing. \throws Error file_unwritable.

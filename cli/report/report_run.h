@@ -12,7 +12,7 @@
 
 namespace frontmost::cli {
 
-/// The pairs of one hidden object. Precondition: `all` is sorted.
+/// Returns the pairs of one hidden object. Precondition: `all` is sorted.
 [[nodiscard]] std::span<const HiddenSamples> pairs_of(const std::vector<HiddenSamples>& all, std::uint32_t object);
 
 struct ReportRun {
@@ -26,37 +26,37 @@ struct ReportRun {
 
   [[nodiscard]] const View& view() const { return visible.view; }
   [[nodiscard]] const Scene& scene() const { return surfaces.scene(); }
-  /// The pairs of one object with its front-most hiders.
+  /// Returns the pairs of one object with its front-most hiders.
   [[nodiscard]] std::span<const HiddenSamples> hiders_of(std::uint32_t object) const {
     return pairs_of(accounts.hidden_by_front, object);
   }
 };
 
-/// Numbers of all objects, or of those that --why names. \throws UsageError if it names none.
+/// Returns the numbers of all objects, or of those that --why names. \throws UsageError if --why names no object.
 [[nodiscard]] std::vector<std::uint32_t> objects_asked_for(const Settings& settings, const Scene& scene);
 /// Reports that `where`, a model, has no `what` called `name`, and suggests similar names. \throws UsageError always.
 [[noreturn]] void complain_of_name(const std::string& where, std::string_view what, std::string_view name,
                                    const std::vector<std::string_view>& known);
-/// Names of the nodes that the model's file hides; with --why NAME, only nodes called NAME.
+/// Returns the names of the nodes that the model's file hides; with --why NAME, only of nodes called NAME.
 [[nodiscard]] std::vector<std::string> hidden_asked_for(const Settings& settings, const Scene& scene);
-/// Numbers of objects, sorted by visible samples, then by samples in the frame, then by number.
+/// Returns the numbers of objects, sorted by visible samples, then by samples in the frame, then by number.
 [[nodiscard]] std::vector<std::uint32_t> objects_by_sight(const Accounting& accounts);
 
-/// A line for each object that --why names: why it is visible or not.
+/// Returns a line for each object that --why names: why it is visible or not.
 [[nodiscard]] std::string why_text(const ReportRun& run);
-/// The start of a name, at most `longest` bytes; UTF-8 characters stay whole.
+/// Returns the start of a name, at most `longest` bytes. UTF-8 characters stay whole.
 [[nodiscard]] std::string shortened(const std::string& name, std::size_t longest);
 
-/// Two lines: the picture, and the number of visible objects.
+/// Returns two lines: the picture, and the number of visible objects.
 [[nodiscard]] std::string report_summary(const ReportRun& run);
-/// The object's distance; empty if nothing of the object is visible.
+/// Returns the object's distance, or an empty text if nothing of the object is visible.
 [[nodiscard]] std::string distance_text(const ObjectAccount& object);
-/// Why the object is visible or not, and what to change.
+/// Returns why the object is visible or not, and what to change.
 [[nodiscard]] std::string why_text(const ReportRun& run, std::uint32_t object);
 
 [[nodiscard]] std::string report_text(const ReportRun& run);
 [[nodiscard]] Json object_json(const ReportRun& run, std::uint32_t number);
-/// The report of one view, with all of its objects.
+/// Returns the report of one view, with all of its objects.
 [[nodiscard]] Json view_report_json(const ReportRun& run);
 [[nodiscard]] Json report_json(const ReportRun& run);
 

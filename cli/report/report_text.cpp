@@ -20,7 +20,7 @@ std::string short_name(const ReportRun& run, std::uint32_t object) {
 
 std::string share_text(double share) { return fmt::format("{:.1f} %", 100 * share); }
 
-/// Columns from the left; the name's column is as wide as the longest name.
+/// The columns of a row. The name's column is as wide as the longest name.
 constexpr std::string_view layout = "{:>6}  {:<{}}  {:>10}  {:>10}  {:>8}  {:>8}  {:>8}  {:>9}  {}";
 
 std::string row_text(const ReportRun& run, std::uint32_t number, std::size_t width) {

@@ -24,12 +24,12 @@ void check_view_of_report(const ViewSettings& view, const ReportSettings& report
   if (report.bop && view.orthographic)
     throw UsageError("--bop needs a perspective camera, because BOP has no other cameras");
   if (view.camera_model != CameraModel::pinhole)
-    throw UsageError("report needs a pinhole camera; --camera-model must be left out");
+    throw UsageError("the command report needs a pinhole camera; --camera-model must be left out");
   if (view.depth.is_used)
-    throw UsageError("report counts the nearest surfaces; options of a depth buffer must be left out");
+    throw UsageError("the command report counts the nearest surfaces; leave out the options of a depth buffer");
 }
 
-/// The views of the file, checked before the model is read.
+/// Returns the views of the file, checked before the model is read.
 std::vector<ViewSettings> views_of_file(const Settings& settings) {
   std::vector<ViewSettings> views;
   std::map<std::string, std::size_t> numbers;  // by name of the view

@@ -24,10 +24,11 @@ bool is_centred(const Projection& p) {
          std::abs(p.bottom + p.top) <= 1e-9 * (p.top - p.bottom);
 }
 
-/// The angle between two edges of the picture, in degrees.
+/// Returns the angle between two edges of the picture, in degrees.
 double angle(double low, double high) { return (std::atan(high) - std::atan(low)) * degrees_per_radian; }
 
-/// The vertical view angle that gives this view. For a parallel projection, as seen from its distance to the target.
+/// Returns the vertical view angle of a view. For a parallel projection, it is the angle of the picture as seen from
+/// the eye's distance to the target.
 double view_angle(const View& view, const glm::dvec3& target) {
   const Projection& p = view.projection;
   const double distance = p.orthographic ? glm::distance(view.eye(), target) : 1.0;

@@ -14,7 +14,7 @@
 
 namespace frontmost::cli {
 
-/// Zero is not added, because that would turn -0 into 0 in reports of models near zero.
+/// Returns a point in the file's coordinates. An origin of zero is not added, because that would turn -0 into 0.
 [[nodiscard]] inline glm::dvec3 in_file(const glm::dvec3& in_scene, const glm::dvec3& origin) {
   return origin == glm::dvec3(0) ? in_scene : origin + in_scene;
 }
@@ -27,13 +27,13 @@ namespace frontmost::cli {
   return world_from_eye;
 }
 
-/// A point for people: six digits, or all digits of a double if the model lies far from zero.
+/// Returns a point as text for people: six digits, or all digits of a double if the model lies far from zero.
 [[nodiscard]] std::string place_text(const glm::dvec3& in_scene, const glm::dvec3& origin);
 
-/// The camera as JSON, in the coordinates of the model's file. `target` is the focal point of the look-at form. `view`
-/// and `target` are relative to the scene's `origin`.
+/// Returns the camera as JSON, in the coordinates of the model's file. `target` is the focal point of the look-at form.
+/// `view` and `target` are relative to the scene's `origin`.
 [[nodiscard]] Json camera_json(const View& view, const glm::dvec3& target, const glm::dvec3& origin);
-/// Options that reproduce this view.
+/// Returns options that reproduce this view.
 [[nodiscard]] std::string camera_flags(const View& view, const glm::dvec3& target, const glm::dvec3& origin);
 [[nodiscard]] std::string camera_text(const View& view, const glm::dvec3& target, const glm::dvec3& origin);
 

@@ -18,15 +18,15 @@ struct SeenView {
   Buffer<float> window_depths;  ///< stored depths of a depth buffer, in the order of `visible`; else empty
 };
 
-/// The depth state with defaults, which depend on --reversed.
+/// Returns the depth state with defaults, which depend on --reversed.
 [[nodiscard]] DepthState depth_state(const DepthSettings& settings);
 [[nodiscard]] double depth_clear(const DepthSettings& settings);
 
-/// Casts rays if there is an index.
+/// Determines visibility in all pixels of a view. Casts rays if there is an index.
 [[nodiscard]] SeenView look_at_surfaces(const Surfaces& surfaces, const View& view, const DepthSettings& settings,
                                         const Execution& execution, const RayIndex* index = nullptr);
 
-/// Names on the command line: "D8", "LESS" and so on.
+/// Returns names as on the command line: "D8", "LESS" and so on.
 [[nodiscard]] std::string_view name(DepthFormat format);
 [[nodiscard]] std::string_view name(DepthFunc func);
 

@@ -5,7 +5,7 @@
 //          up         .-.                      up
 //           |        /   \                      |      ___
 //           |        |   |                      |   .-'   |  <- flat, and nothing else is
-//            |        |___|  <- flat             |   '-.___|      no other side is flat
+//           |        |___|  <- flat             |   '-.___|      no other side is flat
 //
 // Plates are flat on both sides and boxes everywhere, so they cause no warning.
 #include "cli/view/up_axis.h"
@@ -18,7 +18,7 @@
 namespace frontmost::cli {
 namespace {
 
-/// The share of a side of the bounds that is covered by triangles in it which face outwards.
+/// The shares of two opposite sides of the bounds that are covered by triangles in these sides that face outwards.
 struct FlatSides {
   double low = 0, high = 0;
 };
@@ -32,7 +32,7 @@ std::array<FlatSides, 3> find_flat_sides(const Surfaces& surfaces) {
   const PrimitiveId step = surfaces.primitive_count() / most_asked + 1;
   std::array<FlatSides, 3> sides;
   for (PrimitiveId id = 0; id < surfaces.primitive_count(); id += step) {
-    const std::array<glm::vec3, 3> c = surfaces.corners(id);  // formats that leave up open mirror nothing
+    const std::array<glm::vec3, 3> c = surfaces.corners(id);  // formats that leave the up axis open mirror nothing
     if (!is_finite(c[0]) || !is_finite(c[1]) || !is_finite(c[2])) continue;
     const glm::dvec3 doubled_area = glm::cross(glm::dvec3(c[1] - c[0]), glm::dvec3(c[2] - c[0]));
     for (int axis = 0; axis < 3; ++axis) {
@@ -51,7 +51,7 @@ std::array<FlatSides, 3> find_flat_sides(const Surfaces& surfaces) {
   return sides;
 }
 
-/// Formats whose specification defines the up axis are trusted.
+/// Whether the format leaves the up axis open. Formats whose specification defines it are trusted.
 bool leaves_up_open(const SceneSource& source) {
   return source.format == ModelFormat::stl || source.format == ModelFormat::ply || source.format == ModelFormat::obj ||
          source.format == ModelFormat::off;

@@ -14,9 +14,9 @@ namespace frontmost::cli {
 /// Whether the camera's direction depends on the up axis.
 [[nodiscard]] bool depends_on_up(const ViewSettings& view);
 
-/// A warning that names --up if the model seems to lie: it has a flat base at the low side of the other usual up axis,
-/// y or z, and no other flat side. Empty unless the view depends on the up axis, nobody stated it, and the format
-/// leaves it open. O(triangles), of a million at most.
+/// Returns a warning that names --up if the model seems to lie: it has a flat base at the low side of the other usual
+/// up axis, y or z, and no other flat side. Returns nothing unless the view depends on the up axis, nobody stated it,
+/// and the format leaves it open. O(triangles), of a million at most.
 [[nodiscard]] std::optional<std::string> up_warning(const ViewSettings& view, const LoadOptions& load,
                                                     const Surfaces& surfaces);
 

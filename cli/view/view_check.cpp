@@ -2,7 +2,7 @@
 // Checks which view options exclude or need one another.
 //
 // A camera can be given in four ways: by a name, by places and directions, by a pose, or by a camera of the model. Two
-// of them contradict each other, and a parameter of one has no meaning for the others. So each such pair is an error
+// ways contradict each other, and a parameter of one way has no meaning for the others. So each such pair is an error
 // that names both flags; there is no rule of precedence.
 #include <fmt/format.h>
 
@@ -38,7 +38,7 @@ void check_camera_model(const ViewSettings& s) {
                   {"far", s.far.has_value()},
                   {"cull", s.culling != Culling::none}});
   if (model.is_set && s.samples == 64)
-    throw UsageError("--samples 64 needs a pinhole camera; --camera-model takes up to 16");
+    throw UsageError("--samples 64 needs a pinhole camera; with --camera-model, 16 samples are the most");
   if (model.is_set && s.depth.is_used)
     throw UsageError("--camera-model: options of a depth buffer need a pinhole camera");
   if (s.fisheye_angle && s.camera_model != CameraModel::fisheye)

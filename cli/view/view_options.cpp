@@ -36,7 +36,8 @@ const Camera& model_camera(const ViewSettings& settings, const Scene& scene) {
       fmt::format("--camera-index: there is no camera {1}; cameras in the model: {0}", scene.cameras.size(), index));
 }
 
-/// Rotation about an axis through `pivot`, anticlockwise as seen from the axis' tip. Rodrigues' formula.
+/// Returns the pose, rotated about an axis through `pivot`, anticlockwise as seen from the axis' tip. Rodrigues'
+/// formula.
 glm::dmat4 turned(const glm::dmat4& pose, const glm::dvec3& pivot, const glm::dvec3& about, double degrees) {
   const glm::dvec3 k = glm::normalize(about);
   const double c = std::cos(degrees * radians_per_degree), s = std::sin(degrees * radians_per_degree);
@@ -47,7 +48,7 @@ glm::dmat4 turned(const glm::dmat4& pose, const glm::dvec3& pivot, const glm::dv
   return result;
 }
 
-/// Azimuth and elevation as in VTK and f3d: about the camera's own up, then about its own right.
+/// Turns the camera by azimuth and elevation, as VTK and f3d do: about the camera's own up, then about its own right.
 void turn(Aim& aim, const ViewSettings& settings) {
   if (settings.azimuth != 0) {
     aim.world_from_eye = turned(aim.world_from_eye, aim.target, axis(aim.world_from_eye, 1), settings.azimuth);
@@ -69,19 +70,19 @@ Subject subject_of(const ViewSettings& settings, const Surfaces& surfaces) {
   return objects == FramedObjects::all ? Subject{surfaces.bounds(), {}} : find_subject(surfaces);
 }
 
-/// Bounds of the framed objects.
+/// Returns the bounds of the framed objects.
 Box subject_box(const ViewSettings& settings, const Surfaces& surfaces) {
   return or_unit_box(subject_of(settings, surfaces).bounds);
 }
 
-/// The centre of the framed objects, projected onto the viewing axis.
+/// Returns the centre of the framed objects, projected onto the viewing axis.
 glm::dvec3 ahead_of(const ViewSettings& settings, const View& view, const Surfaces& surfaces) {
   const Box box = subject_box(settings, surfaces);
   const double along = glm::dot(middle_of(box) - view.eye(), view.forward());
   return view.eye() + view.forward() * (along > 0 ? along : std::max(double(box.diagonal()), 1e-6));
 }
 
-/// `base` is the library's default view, which provides all that the settings omit.
+/// Returns the aim of a camera. `base` is the library's default view, which provides all that the settings omit.
 Aim aim_of(const ViewSettings& settings, const Surfaces& surfaces, const View& base) {
   const glm::dvec3& origin = surfaces.scene().origin;
   const glm::dvec3 target =
@@ -115,8 +116,8 @@ std::optional<Intrinsics> intrinsics_of(const ViewSettings& settings) {
   return Intrinsics{fx, fy, cx, cy, settings.pixel_rule};
 }
 
-/// The sides at unit distance. For a parallel projection, the extent that a perspective camera would see at the focal
-/// point.
+/// Returns the projection with its sides at unit distance. place() scales the sides of a parallel projection to what a
+/// perspective camera would see at the focal point.
 Projection shape_of(const ViewSettings& settings, const glm::ivec2& size, const View& base) {
   const double aspect = double(size.x) / size.y;
   if (const auto intrinsics = intrinsics_of(settings))
@@ -156,7 +157,8 @@ void zoom(Projection& projection, double factor) {
   scale(projection, std::tan(half_angle) / projection.top);
 }
 
-/// Clip planes: the user's, else the model camera's, else fitted ones. `fitted` is the result of framing.
+/// Returns the clip planes: the user's, or else the model camera's, or else fitted ones. `fitted` is the result of
+/// framing.
 ClipDistances clip_of(const ViewSettings& settings, const Surfaces& surfaces, const View& view,
                       const std::optional<ClipDistances>& fitted) {
   const Box box = framed_box(surfaces);
@@ -178,7 +180,8 @@ ClipDistances clip_of(const ViewSettings& settings, const Surfaces& surfaces, co
   return clip;
 }
 
-/// The library's framing. `aim`, if given, replaces the named direction, and its target becomes the centre.
+/// Returns the library's framing. `aim`, if given, replaces the named direction. A given focal point becomes the
+/// centre.
 View framed(const ViewSettings& settings, const Surfaces& surfaces, const glm::ivec2& size, const Aim* aim = nullptr) {
   FrameOptions options;
   if (aim) {
@@ -191,7 +194,7 @@ View framed(const ViewSettings& settings, const Surfaces& surfaces, const glm::i
   options.orthographic = settings.orthographic;
   options.objects = settings.framed.value_or(FramedObjects::subject);
   if (settings.view_angle) {
-    // The library measures the field of view over the smaller side; the flag, like f3d, from bottom to top.
+    // The library's field of view spans the smaller side of the picture; that of the flag and of f3d, its height.
     const double half = std::tan(*settings.view_angle * 0.5 * radians_per_degree);
     options.min_fov = 2 * std::atan(half * std::min(1.0, double(size.x) / size.y));
   }

@@ -20,28 +20,28 @@ void read_pose_file(ViewSettings& settings);
 /// \throws UsageError naming them
 void check_view_settings(const ViewSettings& settings);
 
-/// The view of these surfaces; `samples` is left at 1. Without a position, the model is fitted into the picture.
-/// Settings are in the coordinates of the model's file; a view is relative to the scene's origin. \throws UsageError
-/// for a camera number that the model lacks; Error from the library's own checks.
+/// Returns the view of these surfaces, of which `samples` is left at 1. Without a position, the model is fitted into
+/// the picture. Settings are in the coordinates of the model's file, and the view is relative to the scene's origin.
+/// \throws UsageError for a camera number that the model lacks; Error from the library's own checks.
 [[nodiscard]] View resolve_view(const ViewSettings& settings, const Surfaces& surfaces);
 
 /// Whether the picture is fitted to find_subject(), so that other objects may reach out of it.
 [[nodiscard]] bool is_fitted_to_subject(const ViewSettings& settings);
 
-/// A warning if is_fitted_to_subject() and objects reach out of the picture. O(objects).
+/// Returns a warning if is_fitted_to_subject() and objects reach out of the picture. O(objects).
 [[nodiscard]] std::optional<std::string> framing_warning(const ViewSettings& settings, const Surfaces& surfaces);
 
-/// Bounds for fitting clip planes: the model's, or a unit box about the origin if the model has none.
+/// Returns bounds for fitting clip planes: the model's, or a unit box about the origin if the model has none.
 [[nodiscard]] Box framed_box(const Surfaces& surfaces);
 
-/// False if resolve_view() gives the same view for all surfaces: the camera and both planes are given.
+/// Whether the view depends on the surfaces. It does not if the camera and both planes are given.
 [[nodiscard]] bool depends_on_model(const ViewSettings& settings);
 
-/// The text for {view}: the given name, the named direction, or the way in which the camera was given.
+/// Returns the text for {view}: the given name, the named direction, or the way in which the camera was given.
 [[nodiscard]] std::string view_name(const ViewSettings& settings);
 
-/// The centre of rotation of the camera, in world space: the given focal point, or else the centre of the framed
-/// objects, projected onto the viewing axis.
+/// Returns the centre of rotation of the camera, in world space: the given focal point, or else the centre of the
+/// framed objects, projected onto the viewing axis.
 [[nodiscard]] glm::dvec3 focal_point_of(const ViewSettings& settings, const View& view, const Surfaces& surfaces);
 
 }  // namespace frontmost::cli

@@ -6,7 +6,7 @@
 namespace frontmost::cli {
 namespace {
 
-/// A column with the value of(row) of each row.
+/// Returns a column with the value of(row) of each row.
 template <class Value, class Rows, class Of>
 TableColumn column(const char* name, const Rows& rows, const Of& of) {
   std::vector<Value> values;
@@ -38,7 +38,7 @@ Table listed(const std::vector<Face>& faces, const Surfaces& surfaces) {
   return table;
 }
 
-/// The visible share of the face's own area, 0 to 1.
+/// Returns the visible share of the face's own area, 0 to 1.
 double share_of(const SeenFace& face, const Surfaces&) { return face.largest_share; }
 double share_of(const VisibleFace& face, const Surfaces& surfaces) {
   const auto corners = surfaces.corners(face.id);
@@ -47,7 +47,8 @@ double share_of(const VisibleFace& face, const Surfaces& surfaces) {
   return std::min(2 * face.area / doubled, 1.0);
 }
 
-/// Five colours of the map "viridis" (N. Smith, S. van der Walt. 2015), which keeps its order in grey.
+/// Returns a colour between five colours of the map "viridis" (N. Smith, S. van der Walt. 2015), which keeps its order
+/// in grey.
 glm::dvec3 color_of(double share) {
   constexpr double stops[5][3] = {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}};
   const double at = share * 4;

@@ -13,16 +13,16 @@
 
 namespace frontmost::cli {
 
-/// A row for each listed face: primitive, object, triangle, and its measurements.
+/// Returns a row for each listed face: primitive, object, triangle, and its measurements.
 [[nodiscard]] Table table_of(const std::vector<VisibleFace>& faces, const Surfaces& surfaces);
 [[nodiscard]] Table table_of(const std::vector<SeenFace>& faces, const Surfaces& surfaces);
 
-/// A row for each face of the model: object, triangle, measurements (0 for unseen faces), and red, green and blue by
-/// the visible share.
+/// Returns a row for each face of the model: object, triangle, measurements (0 for unseen faces), and red, green and
+/// blue by the visible share.
 [[nodiscard]] Table colored_table_of(const std::vector<VisibleFace>& faces, const Surfaces& surfaces);
 [[nodiscard]] Table colored_table_of(const std::vector<SeenFace>& faces, const Surfaces& surfaces);
 
-/// The object of each of these faces, and its number in that object.
+/// Returns the object of each of these faces, and its number in that object.
 [[nodiscard]] Table origin_table_of(const std::vector<PrimitiveId>& ids, const Surfaces& surfaces);
 
 }  // namespace frontmost::cli

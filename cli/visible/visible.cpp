@@ -69,7 +69,7 @@ void check(const Settings& settings) {
   if (s.sphere && (v.named || v.position || v.direction || v.pose || v.pose_file || v.camera_index))
     throw UsageError("--sphere looks from all around, and excludes options of the camera's position and direction");
   if (settings.run.json && writes_standard_output(s))
-    throw UsageError("--json and an output to - both write to standard output; give a file");
+    throw UsageError("--json and the output '-' both write to standard output; give a file");
   for (const std::string& path : s.outputs)
     if (path != "-" && !has_suffix(path, {".csv", ".npy", ".ply"}))
       throw UsageError(path + ": the suffix names no format; use .csv, .npy or .ply");
@@ -80,7 +80,7 @@ void check(const Settings& settings) {
   check_outputs(files_of(s), input_files(settings));
 }
 
-/// The views' settings, checked before the model is read.
+/// Returns the views' settings, checked before the model is read.
 std::vector<ViewSettings> places_of(const Settings& settings) {
   std::vector<ViewSettings> places;
   if (!settings.visible.views) return {settings.view};
@@ -88,7 +88,7 @@ std::vector<ViewSettings> places_of(const Settings& settings) {
     try {
       check_view_settings(one.view);
       if (one.view.camera_model != CameraModel::pinhole || one.view.tessellation_error)
-        throw UsageError("visible needs a pinhole camera, and excludes --tessellation-error");
+        throw UsageError("the command visible needs a pinhole camera, and excludes --tessellation-error");
     } catch (const UsageError& error) {
       throw UsageError(fmt::format("{}: views[{}]: {}", *settings.visible.views, places.size(), error.what()));
     }
@@ -97,8 +97,8 @@ std::vector<ViewSettings> places_of(const Settings& settings) {
   return places;
 }
 
-/// Views along `count` directions on a spiral from below the model to above it. Each turns by a golden angle, so that
-/// all are about equally far from their neighbours.
+/// Returns views along `count` directions on a spiral from below the model to above it. Each direction is turned by a
+/// golden angle from the last one, so that all are about equally far from their neighbours.
 std::vector<View> views_around(const ViewSettings& settings, const Surfaces& surfaces, int count) {
   constexpr double golden_angle = 2.3999632297286533;
   const glm::dvec3 up = direction(surfaces.scene().up), side = {up.y, up.z, up.x}, third = glm::cross(up, side);
@@ -121,7 +121,7 @@ std::vector<View> views_of(const Settings& settings, const std::vector<ViewSetti
   return views;
 }
 
-/// The results.
+/// The faces that were found, and the reports about them.
 struct FacesFound {
   std::vector<PrimitiveId> ids;
   Table listed, colored;  ///< `colored` only if a model is to be written
@@ -180,7 +180,7 @@ void write(const std::string& path, const FacesFound& found, const Scene& scene)
   save(found.listed, path, has_suffix(path, {".npy"}) ? TableFormat::npy : TableFormat::csv);
 }
 
-/// Writes the model of the visible faces, and adds the omitted ones to the reports.
+/// Writes the model of the visible faces, and adds the numbers of omitted faces and objects to the reports.
 void write_kept(const std::vector<std::string>& paths, const Surfaces& surfaces, FacesFound& found) {
   if (paths.empty()) return;
   const Scene kept = keep_faces(surfaces.scene(), found.ids);

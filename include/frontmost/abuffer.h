@@ -13,30 +13,30 @@
 namespace frontmost {
 
 struct AbufferOptions {
-  /// Sub-samples of a pixel. 0: the view's samples (View::samples, at sample_offsets()); 2, 4 or 8: a regular grid with
-  /// as many rows and columns.
+  /// Sub-samples of a pixel. 0: the view's samples (View::samples, at sample_offsets()); n = 2, 4 or 8: a regular grid
+  /// of n rows and n columns.
   int grid = 0;
-  /// Multiplies every opacity, 0 to 1. Below 1 nothing is opaque, so all fragments are kept.
+  /// 0 to 1: multiplies every opacity. If it is below 1, nothing is opaque, so all fragments are kept.
   float opacity = 1.0f;
 };
 
 /// The part of one triangle that lies in one pixel.
 struct Fragment {
-  /// Bit s is set if sub-sample s is covered. Grids are numbered row by row from the top left. Never 0.
+  /// Bit s is set if sub-sample s is covered; at least one bit is set. Grids are numbered row by row from the top left.
   std::uint64_t mask = 0;
   PrimitiveId primitive = no_primitive;
-  float key = 0;                 ///< at the pixel's centre, within the triangle's range; as in Visible::keys
+  float key = 0;                 ///< key at the pixel's centre, limited to the triangle's keys; as in Visible::keys
   float key_dx = 0, key_dy = 0;  ///< change of the key per pixel to the right and down
-  float opacity = 1;             ///< the material's without its texture, times AbufferOptions::opacity
+  float opacity = 1;             ///< opacity of the material without its texture, times AbufferOptions::opacity
 };
 
-/// The fragments of every pixel, nearer first; at equal keys at the centre, the lower id first. Fragments that lie
-/// wholly behind an opaque one covering the whole pixel are left out. If 64 x 64 pixels have more than 2^18 fragments,
-/// coincident triangles of higher id than an opaque one are left out as well. A clipped triangle may have several
-/// fragments in a pixel, with disjoint masks.
+/// The fragments of every pixel, ordered by their keys at the pixel's centre, nearer first; at equal keys, the lower id
+/// first. Fragments that lie wholly behind an opaque one covering the whole pixel are left out. If 64 x 64 pixels have
+/// more than 2^18 fragments, coincident triangles of higher id than an opaque one are left out as well. A clipped
+/// triangle may have several fragments in a pixel, with disjoint masks.
 struct FragmentLists {
   View view;
-  std::vector<glm::ivec2> samples;  ///< positions of the mask's bits, in 1/256 pixel from the pixel's top left corner
+  std::vector<glm::ivec2> samples;  ///< by bit: position in 1/256 pixel from the pixel's top left corner
   Buffer<std::uint64_t> first;      ///< index of each pixel's first fragment, row by row, and the total at the end
   std::vector<Fragment> fragments;
 
@@ -46,16 +46,16 @@ struct FragmentLists {
   }
 };
 
-/// The most fragments that abuffer() returns: 2^30, 32 GiB. In every function here, a pixel has at most 2^20 - 1.
-/// Functions process at most 2^28 fragments and 1,024 more per triangle, up to 2^30; or 64 per pixel, if that is more.
-/// The number of fragments is estimated from the areas of triangles before gathering, and includes hidden ones. Of
-/// coincident opaque triangles only the lowest id counts. Other coincident triangles all count, but in visible_layers()
-/// only as many as there are layers. In count_fragments() all count.
+/// The most fragments that abuffer() returns: 2^30, 32 GiB. In every function here, a pixel has at most 2^20 - 1. A
+/// function processes at most 2^28 fragments plus 1,024 per triangle, or 64 per pixel if that is more, and never more
+/// than 2^30. The number of fragments is estimated from the areas of triangles before gathering, and includes hidden
+/// ones. Of coincident opaque triangles only the lowest id counts. Other coincident triangles all count, except that
+/// visible_layers() counts only as many as there are layers. count_fragments() counts every triangle.
 inline constexpr std::uint64_t most_fragments = std::uint64_t(1) << 30;
 
-/// \returns all fragments of a view: 32 bytes each, and twice that during the call. O(triangles + n log^2 n for lists
-/// of n fragments). The bytes do not depend on threads or instruction set, nor, except at equal keys, on the order of
-/// triangles.
+/// \returns all fragments of a view. They take 32 bytes each, and twice that during the call. O(triangles + n log^2 n
+/// for lists of n fragments). The bytes do not depend on threads or instruction set, nor, except at equal keys, on the
+/// order of triangles.
 /// \throws Error as validate(view) does, bad_argument for options out of range, limit_exceeded beyond the limits above.
 [[nodiscard]] FragmentLists abuffer(const Surfaces& surfaces, const View& view, const AbufferOptions& options = {},
                                     const Execution& execution = {});
@@ -63,7 +63,7 @@ inline constexpr std::uint64_t most_fragments = std::uint64_t(1) << 30;
 /// Numbers of fragments that the A-buffer processes for a view.
 struct FragmentCounts {
   std::uint64_t fragments = 0;  ///< fragments of all pixels, including those behind opaque ones
-  std::uint32_t longest = 0;    ///< the most in one pixel
+  std::uint32_t longest = 0;    ///< greatest number of fragments in one pixel
 };
 
 /// Counts fragments without storing them: the depth complexity of a picture, and an upper bound for abuffer().
@@ -72,9 +72,9 @@ struct FragmentCounts {
 [[nodiscard]] FragmentCounts count_fragments(const Surfaces& surfaces, const View& view,
                                              const AbufferOptions& options = {}, const Execution& execution = {});
 
-/// The first `count` layers at the view's samples. Layer k holds, at every sample, the k-th nearest primitive by its
-/// key there; nothing is seen behind an opaque primitive. The nearest layer equals zbuffer()'s answer to the bit;
-/// shade() shows the others with SeeThrough::never. `options.grid` is ignored. Memory: `count` Visibles and a few
+/// \returns the first `count` layers at the view's samples. Layer k holds, at every sample, the k-th nearest primitive
+/// by its key there; nothing is seen behind an opaque primitive. The nearest layer equals zbuffer()'s answer to the
+/// bit; shade() shows the others with SeeThrough::never. `options.grid` is ignored. Memory: `count` Visibles and a few
 /// megabytes a thread.
 /// \throws Error as abuffer() does; bad_argument unless `count` is 1 to 1024.
 [[nodiscard]] std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, int count,

@@ -31,7 +31,7 @@ enum class ErrorCode : std::uint8_t {
 };
 
 /// The exception thrown by every public function that can be given bad input. what() joins file, place and reason with
-/// ": ", without the empty ones: "engine.stl: triangle 41: its third corner is not a number".
+/// ": ", except empty ones: "engine.stl: triangle 41: its third corner is not a number".
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, std::string reason);
@@ -44,7 +44,7 @@ class Error : public std::runtime_error {
   /// The place in the file, or the argument or function: "line 7", "near"; may be empty.
   [[nodiscard]] const std::string& place() const noexcept { return parts_->place; }
   [[nodiscard]] const std::string& reason() const noexcept { return parts_->reason; }
-  /// \returns a copy with this file and place; the error's own file and place are appended to the place.
+  /// \returns a copy with this file and place. The error's own file and place are appended to `place`.
   [[nodiscard]] Error within(const std::string& file, const std::string& place = "") const;
 
  private:
@@ -63,13 +63,14 @@ enum class Isa : std::uint8_t { best, scalar, sse4, avx2, avx512, neon, wasm };
 /// Instruction sets that this build contains and this machine can run, slowest first, never `best`.
 [[nodiscard]] std::span<const Isa> available_isas();
 
-/// Callbacks that watch long work. `cancelled` is called before every small piece of work, `progress` now and then,
-/// both by several threads at a time, so they must be quick and thread-safe. An exception that a callback throws ends
-/// the work and is thrown again.
+/// Callbacks that watch long work. `cancelled` is called before every small piece of work, and `progress` now and then.
+/// Several threads call both at the same time, so they must be quick and thread-safe. An exception that a callback
+/// throws ends the work and is thrown again.
 struct Watch {
-  /// Receives the name of the current stage ("load", "surfaces", ...) and the part of it that is done, 0 to 1.
+  /// Receives the name of the current stage ("load", "surfaces", ...) and the fraction of the stage that is done, 0 to
+  /// 1.
   std::function<void(std::string_view stage, double fraction)> progress;
-  /// Returning true ends the work soon, by an Error with ErrorCode::cancelled.
+  /// If it returns true, the work soon ends with an Error of ErrorCode::cancelled.
   std::function<bool()> cancelled;
 };
 
@@ -83,7 +84,7 @@ struct Execution {
 /// Number of a triangle, counted over all instances in scene order.
 using PrimitiveId = std::uint32_t;
 inline constexpr std::uint32_t no_primitive = 0xFFFFFFFFu;
-/// "None" as an index of materials, textures, objects and everything else.
+/// Index that stands for "none", for materials, textures, objects and everything else.
 inline constexpr std::uint32_t no_index = 0xFFFFFFFFu;
 
 /// False if a coordinate is NaN or infinite: such a coordinate times 0 is NaN, and NaN is not 0.
@@ -172,7 +173,8 @@ class Buffer {
 /// \returns `text` as valid UTF-8: a byte that belongs to no character becomes four characters, such as \xE9. Control
 /// characters stay, because JSON has its own way to write them. O(size).
 [[nodiscard]] std::string utf8_text(std::string_view text);
-/// Like utf8_text(), but control characters are escaped as well: a line feed becomes \x0A. For terminals and web pages.
+/// \returns `text` for terminals and web pages: like utf8_text(), but control characters are escaped as well. A line
+/// feed becomes \x0A.
 [[nodiscard]] std::string printable_text(std::string_view text);
 
 // Output of several files that belong together: either all of them appear, or none.
@@ -204,8 +206,8 @@ class StagedFolder {
   [[nodiscard]] std::string path(const std::string& name) const { return (staged_ / name).string(); }
   /// Replaces the hidden folder at the beginning of `path` by the final folder; returns other texts unchanged.
   [[nodiscard]] std::string told(const std::string& path) const;
-  /// Moves the files to the final folder, in this order, which takes no further disk space. Existing files are
-  /// replaced, also those at the end of links; their permissions are kept.
+  /// Moves the files of these names to the final folder, in this order. Takes no further disk space. Existing files are
+  /// replaced, even if `names` leads to them by a link; their permissions are kept.
   /// \throws Error file_unwritable.
   void commit(const std::vector<std::string>& names) const;
 

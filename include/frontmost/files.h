@@ -21,45 +21,46 @@
 
 namespace frontmost {
 
-/// Decodes images of textures in place of load(): in formats that load() does not know, or PNG, JPEG and WebP in a
-/// build without their libraries. Several threads call a decoder at once. An Error that it throws becomes a warning of
-/// the scene, and the texture is left out.
+/// Decodes texture images in place of load(), for formats that load() does not know, or in a build without the
+/// libraries for PNG, JPEG and WebP. Several threads may call a decoder at once. If it throws an Error, the scene gets
+/// a warning, and the texture is left out.
 class ImageDecoder {
  public:
   virtual ~ImageDecoder() = default;
-  /// Width and height of an image file. Called before pixels(), so that oversized images take no memory.
+  /// \returns the width and height of an image file. Called before pixels(), so that oversized images take no memory.
   [[nodiscard]] virtual glm::ivec2 size(std::span<const std::byte> file) const = 0;
-  /// Width, height and pixels: sRGB, or whatever the material expects; straight alpha; the first row on top.
+  /// \returns width, height and pixels, with straight alpha and the first row on top. Values are as stored: sRGB for
+  /// colours, or what the material expects.
   [[nodiscard]] virtual Texture pixels(std::span<const std::byte> file) const = 0;
 };
 
 struct LoadOptions {
-  std::optional<ModelFormat> format;  ///< none: by suffix, or by content if that tells none
-  std::optional<Axis> up;             ///< none: the scene file's, or the format's: z for STL and 3MF, y for others
-  const ImageDecoder* image_decoder = nullptr;  ///< borrowed during load(); null: PNG, JPEG and WebP
-  /// Folders, beside its own, in or below which a scene file may name models and poses.
+  std::optional<ModelFormat> format;            ///< none: found by suffix, or by content if the suffix names no format
+  std::optional<Axis> up;                       ///< none: by scene file, or by format: z for STL and 3MF, y for others
+  const ImageDecoder* image_decoder = nullptr;  ///< borrowed during load(); null: PNG, JPEG, WebP only
+  /// Further folders in or below which a scene file may name models and poses. Its own folder needs no entry.
   std::vector<std::string> allow_outside{};
 };
 
 /// Reads a model from a file; "-" is standard input, "builtin:NAME" a built-in scene. Keeps the file's triangle count
 /// and order. A file that the model names (material libraries, buffers, textures, models of scene files) must be in the
-/// model's folder or below, or, for scene files, in LoadOptions::allow_outside. A model far from zero for its size gets
-/// a Scene::origin (see fitting_origin()), subtracted in doubles. The scene's coordinates are relative to the origin: p
-/// is origin + p in the file. Callers subtract the origin from eyes, rays and points in the file's coordinates.
+/// model's folder or below, or, for scene files, in LoadOptions::allow_outside. A model that lies far from zero for its
+/// size gets a Scene::origin (see fitting_origin()), which is subtracted in doubles: point p of the scene is origin + p
+/// in the file. Callers subtract the origin from eyes, rays and points that are in the file's coordinates.
 /// Scene::source holds the format, the unit and the files read. Memory while reading: about twice the result at most.
 /// \throws Error file_unreadable, file_malformed, unsupported or limit_exceeded: "name: place: reason".
 [[nodiscard]] Scene load(const std::string& path, const LoadOptions& options = {}, const Execution& execution = {});
 
-/// Reads a model from memory, with the same origin; `name` stands for the file in messages. Files that the model names
-/// are not read.
+/// Reads a model from memory, and sets the origin in the same way; `name` stands for the file in messages. Files that
+/// the model names are not read.
 [[nodiscard]] Scene load(std::span<const std::byte> bytes, const std::string& name, const LoadOptions& options = {},
                          const Execution& execution = {});
 
 /// Replaces the categories of a scene by those of a JSON file; "-" is standard input. "objects" maps names of objects
 /// to names of categories. "categories" lists the categories as in a scene file: names, numbered from 1, or objects
-/// with `name` and `number`. Without the list, categories follow the order of the objects' names. All objects of one
-/// name get one category; objects that are not named have none. A name that no object has becomes a warning of the
-/// scene. O(size of the file + objects).
+/// with `name` and `number`. Without this list, categories are in the order of the objects' names. All objects of one
+/// name get one category; objects that the file does not name have none. The scene gets a warning for each name that no
+/// object has. O(size of the file + objects).
 /// \throws Error file_unreadable, file_malformed or limit_exceeded (64 MiB): "name: place: reason". After an error the
 /// scene is unchanged.
 void load_categories(const std::string& path, Scene& scene);
@@ -82,26 +83,27 @@ enum class ImageFormat : std::uint8_t { png, exr, pfm, npy, jpeg, webp };
 struct SaveOptions {
   std::optional<ImageFormat> format;  ///< none: by suffix; required for "-"
   int bits = 8;                       ///< PNG: 8 or 16 for colours; ids and depths always have 16
-  /// PNG of a depth channel: stored value = depth * scale, rounded. None: the visible range fills 1 to 65535.
+  /// For a PNG of depths: stored value = depth * scale, rounded. None: the visible range of depths fills 1 to 65535.
   std::optional<double> depth_scale;
   int quality = 90;  ///< JPEG and WebP: 1 to 100; higher is closer to the picture, and larger
 };
 
-/// Writes an image; "-" is standard output. A file at `path` stays as it is until the new one is complete, and if
-/// writing fails. The bytes do not depend on the number of threads.
+/// Writes an image; "-" is standard output. An existing file at `path` is replaced when the new file is complete, and
+/// stays if writing fails. The bytes do not depend on the number of threads.
 /// \throws Error file_unwritable; unsupported for channels or alpha that the format cannot hold, and for EXR or WebP in
-/// a build without it; limit_exceeded for ids above 65534 and depths above 65535 / depth_scale in PNG, sides above
-/// 65500 pixels in JPEG or 16383 in WebP; bad_argument for `bits` or `quality` out of range.
+/// a build without it; limit_exceeded for ids above 65534 and depths above 65535 / depth_scale in PNG, and for width or
+/// height above 65500 pixels in JPEG or 16383 in WebP; bad_argument for `bits` or `quality` out of range.
 void save(const Image& image, const std::string& path, const SaveOptions& options = {},
           const Execution& execution = {});
 
-/// Writes a bitmap as PNG, JPEG or WebP, with the bytes of the same image. Only the format and the quality count among
-/// the options.
+/// Writes a bitmap as PNG, JPEG or WebP. The file has the same bytes as for the Image of the same picture. Of the
+/// options, only the format and the quality are used.
 void save(const Bitmap& bitmap, const std::string& path, const SaveOptions& options = {},
           const Execution& execution = {});
 
-/// Writes a deep OpenEXR file, whatever its suffix: one part of type deepscanline, compression ZIPS, 32-bit floats and
-/// uint32. \throws Error file_unwritable; bad_argument as validate() does; unsupported in a build without OpenEXR.
+/// Writes a deep OpenEXR file, whatever the suffix of `path`: one part of type deepscanline, with ZIPS compression,
+/// 32-bit floats and uint32. \throws Error file_unwritable; bad_argument as validate() does; unsupported in a build
+/// without OpenEXR.
 void save(const DeepImage& image, const std::string& path, const Execution& execution = {});
 
 /// Writes text, such as an SVG drawing, whole or not at all. \throws Error file_unwritable.
@@ -114,9 +116,10 @@ void save_text(std::string_view text, const std::string& path);
 [[nodiscard]] std::string load_text(const std::string& path, std::uint64_t most_bytes);
 
 /// Reads PNG, EXR, PFM and NPY as save() writes them, and Radiance (.hdr), recognised by content; "-" is standard
-/// input. PNG files that save() did not write give R, G, B, A, linear and premultiplied. PFM and NPY hold no names: one
-/// channel is read as Z or, if integer, as primitive; three or four float channels as R, G, B, A; any others as 0, 1,
-/// 2... Radiance pictures give R, G, B as stored, whatever exposure the file states.
+/// input. PNG files that save() did not write give R, G, B, A, linear and premultiplied. PFM and NPY files hold no
+/// channel names. One channel is read as Z, or, if it holds integers, as primitive; three or four float channels are
+/// read as R, G, B, A; any others as 0, 1, 2... Radiance pictures give R, G, B as stored, whatever exposure the file
+/// states.
 /// \throws Error file_unreadable, file_malformed, unsupported, limit_exceeded (16384 pixels a side).
 [[nodiscard]] Image load_image(const std::string& path);
 /// Reads an image from memory; `name` stands for the file in messages.
@@ -125,17 +128,18 @@ void save_text(std::string_view text, const std::string& path);
 /// Reads an environment: an equirectangular picture of any format that load_image() reads, mostly Radiance (.hdr) or
 /// OpenEXR. Rows go from straight up to straight down, columns once around to the right, as in a Panorama. The result
 /// has float channels R, G, B: linear light, 0 to max_environment_value. Alpha is ignored; a grey picture (Y) gives
-/// three equal channels. NaN and negative values are read as 0, infinity as 65504 (the greatest half float, which
-/// overflowed), and greater values as the maximum.
+/// three equal channels. NaN and negative values are read as 0. Infinity, an overflow of half floats, is read as 65504,
+/// the greatest half float. Values above max_environment_value are read as the maximum.
 /// \throws Error as load_image() does; unsupported without such channels, or if the picture is not twice as wide as
 /// high: cube maps and mirror balls are not environments.
 [[nodiscard]] Image load_environment(const std::string& path);
 /// Reads an environment from memory; `name` stands for the file in messages.
 [[nodiscard]] Image load_environment(std::span<const std::byte> bytes, const std::string& name);
 
-/// The picture as text for a terminal, two pixels a character (half blocks, UTF-8), in 24-bit colours or those of the
-/// 256-colour palette. Fits `columns` x `rows` characters and keeps the picture's proportions; every line ends with a
-/// reset and a line feed. Transparent parts show the terminal's background.
+/// \returns the picture as text for a terminal, with two pixels a character (half blocks, UTF-8), in 24-bit colours or
+/// in those of the 256-colour palette. The text fits into `columns` x `rows` characters and keeps the picture's
+/// proportions; every line ends with a reset of colours and a line feed. Transparent parts show the terminal's
+/// background.
 /// \throws Error bad_argument; unsupported for an image without R, G, B.
 [[nodiscard]] std::string terminal_picture(const Image& image, int columns, int rows, bool true_color = true);
 
@@ -183,10 +187,10 @@ void save(const Table& table, const std::string& path, TableFormat format);
 /// primitive ids; coordinates are the source file's, with the scene's origin added. PLY and STL reverse the winding of
 /// mirrored objects, so that outsides stay outside. GLB omits triangles with non-finite corners, and the normals of a
 /// mesh if one of them has no direction. Curved primitives, cameras, lights and categories are left out. `of_triangles`
-/// holds further properties of PLY faces, one row for each triangle: uchar, uint or double; byte columns named red,
-/// green and blue are colours. O(triangles), for GLB O(triangles log triangles). \throws Error file_unwritable;
-/// unsupported for other suffixes, or a table without PLY; bad_argument for a table that does not fit the triangles;
-/// limit_exceeded above 2^32 - 2 vertices in PLY or 4 GiB in GLB; as validate(scene) does.
+/// has further properties of PLY faces, one row for each triangle: uchar, uint or double; byte columns named red, green
+/// and blue are colours. O(triangles), for GLB O(triangles log triangles). \throws Error file_unwritable; unsupported
+/// for other suffixes, or a table without PLY; bad_argument for a table that does not fit the triangles; limit_exceeded
+/// above 2^32 - 2 vertices in PLY or 4 GiB in GLB; as validate(scene) does.
 void save(const Scene& scene, const std::string& path, const Table& of_triangles = {});
 
 }  // namespace frontmost

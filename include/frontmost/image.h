@@ -17,7 +17,7 @@
 
 namespace frontmost {
 
-/// One plane of values, rows top to bottom: floats for colours, depths and directions; integers for ids.
+/// One plane of values, with rows from top to bottom. Colours, depths and directions are floats; ids are integers.
 struct Channel {
   std::string name;
   std::variant<Buffer<float>, Buffer<std::uint32_t>> values;
@@ -40,7 +40,7 @@ struct Image {
   [[nodiscard]] Channel* find(std::string_view name);
 };
 
-/// A picture with any number of samples per pixel, one behind the other; OpenEXR calls it deep.
+/// A picture with any number of samples per pixel, one behind the other: a deep image, as OpenEXR calls it.
 struct DeepImage {
   int width = 0, height = 0;
   /// Index of each pixel's first sample, rows top to bottom, and the total at the end. Nearer samples come first.
@@ -55,18 +55,18 @@ struct Bitmap {
   Buffer<std::uint8_t> rgba;
 };
 
-/// \throws Error bad_argument unless sizes are 1 to 2^20, there are channels, their names differ, and each plane has
-/// width * height values.
+/// \throws Error bad_argument unless width and height are 1 to 2^20, there is a channel, channel names differ, and each
+/// plane has width * height values.
 void validate(const Image& image);
-/// \throws Error bad_argument unless sizes are 1 to 2^20, there are channels, `first` has one entry per pixel and one
-/// more and never decreases, and each channel has one value per sample.
+/// \throws Error bad_argument unless width and height are 1 to 2^20, there is a channel, `first` has one entry per
+/// pixel and one more and never decreases, and each channel has one value per sample.
 void validate(const DeepImage& image);
-/// \throws Error bad_argument unless sizes are 1 to 2^20 and there are four bytes per pixel.
+/// \throws Error bad_argument unless width and height are 1 to 2^20 and there are four bytes per pixel.
 void validate(const Bitmap& bitmap);
 
-/// The colours of an image in 8-bit sRGB, as save() writes them to a PNG file. Values out of range are clamped, NaN
-/// gives 0, pixels with alpha 0 are black, and an image without A is opaque. \throws Error bad_argument unless
-/// validate(image) passes and R, G, B are planes of floats.
+/// \returns the colours of an image in 8-bit sRGB, as save() writes them to a PNG file. Values out of range are
+/// clamped, NaN gives 0, pixels with alpha 0 are black, and an image without A is opaque. \throws Error bad_argument
+/// unless validate(image) passes and R, G, B are planes of floats.
 [[nodiscard]] Bitmap bitmap_of(const Image& image);
 /// The linear value of an 8-bit sRGB value.
 [[nodiscard]] float linear_of_srgb(std::uint8_t srgb);
@@ -74,22 +74,24 @@ void validate(const Bitmap& bitmap);
 /// The greatest value of a pixel of an environment (pictures.h). Sums over all pixels stay far within a float's range.
 inline constexpr float max_environment_value = 16777216.0f;
 
-/// Maps of a Visible's sample 0, with one channel each. "Z" is the planar depth; `background` where nothing is seen.
+/// A map of sample 0 of each pixel, with one channel "Z": the planar depth, or `background` where nothing is seen.
 [[nodiscard]] Image depth_image(const Visible& visible, float background = std::numeric_limits<float>::infinity());
-/// "distance" is the distance along the ray from eye to sample in perspective, and the depth in parallel projection.
+/// A map of sample 0 with one channel "distance": in perspective the distance along the ray from the eye to the
+/// surface, in parallel projection the planar depth.
 [[nodiscard]] Image ray_distance_image(const Visible& visible,
                                        float background = std::numeric_limits<float>::infinity());
 
 enum class IdKind : std::uint8_t { primitive, object, material };
-/// A map of ids, with one integer channel named "primitive", "object" (instance number) or "material". no_index where
-/// nothing is seen or no material is set.
+/// \returns a map of ids, with one integer channel named "primitive", "object" (instance number) or "material". The id
+/// is no_index where nothing is seen or no material is set.
 [[nodiscard]] Image id_image(const Surfaces& surfaces, const Visible& visible, IdKind kind);
-/// A map of ids for any grid of primitives, such as a RangeScan's, with the top row first.
+/// \returns a map of ids for any grid of primitives, such as that of a RangeScan, with the top row first.
 /// \throws Error bad_argument unless there are width * height primitives.
 [[nodiscard]] Image id_image(const Surfaces& surfaces, const glm::ivec2& size, std::span<const PrimitiveId> primitives,
                              IdKind kind);
 
-/// Counts the pixels of an id_image() by id, for ids below `count`, such as the numbers of Scene::instances. O(pixels).
+/// \returns the number of pixels of an id_image() for each id below `count`; ids may be, for example, instance numbers.
+/// O(pixels).
 /// \throws Error bad_argument unless the image has one channel of integers.
 [[nodiscard]] std::vector<std::uint64_t> count_pixels(const Image& ids, std::size_t count);
 
@@ -98,7 +100,7 @@ enum class IdKind : std::uint8_t { primitive, object, material };
 /// A hash of size, channel names, values, and the number of samples of every pixel.
 [[nodiscard]] std::uint64_t content_hash(const DeepImage& image);
 
-/// Differences of an image from a reference. The difference of two pixels is the greatest of all channels:
+/// Differences of an image from a reference. The difference of two pixels is the greatest difference of any channel:
 /// - R, G, B, A: the difference in 8-bit sRGB with straight alpha, divided by 255; an image without A is opaque;
 /// - other floats (depths, directions): the absolute difference; equal infinities and two NaNs do not differ;
 /// - ids: 1 if they differ.
@@ -113,8 +115,8 @@ struct Comparison {
 [[nodiscard]] Comparison compare(const Image& image, const Image& reference, double threshold = 0,
                                  const Execution& execution = {});
 
-/// A picture of the pixels that differ by more than `threshold`, from red (least) to yellow (most). Other pixels show
-/// the reference in dim grey, or black for maps.
+/// \returns a picture in which pixels that differ by more than `threshold` go from red (least) to yellow (most). Other
+/// pixels show the reference in dim grey, or black for maps.
 /// \throws Error as compare() does.
 [[nodiscard]] Image difference_image(const Image& image, const Image& reference, double threshold = 0,
                                      const Execution& execution = {});

@@ -39,14 +39,16 @@ struct CulledObject {
 };
 
 struct OcclusionOptions {
-  /// Side of a cell of the screen, in pixels, 1 to 64. Smaller cells find more hidden objects and take more time.
+  /// Side length of a cell of the screen, in pixels, 1 to 64. Smaller cells find more hidden objects and take more
+  /// time.
   int cell = 2;
 };
 
 /// Finds the objects that are certainly hidden, for many views of the same surfaces. Objects are visited from the eye
-/// outwards. An object that may be seen covers cells as soon as all objects visited later lie behind it. Triangles
-/// whose material has alpha mode MASK or is see-through (Material::is_see_through()) hide nothing. Each call reuses the
-/// memory of the last. Instances moved by Surfaces::move() are followed automatically. Not for several threads at once.
+/// outwards. An object that may be seen covers cells from the moment when all objects that are still to be visited lie
+/// behind it. Triangles whose material has alpha mode MASK or is see-through (Material::is_see_through()) hide nothing.
+/// Each call reuses the memory of the last. Instances moved by Surfaces::move() are followed automatically. An
+/// Occlusion serves one thread at a time.
 class Occlusion {
  public:
   /// Borrows the surfaces and their scene. O(triangles of meshes), about 65 bytes per triangle of a mesh.
@@ -66,14 +68,14 @@ class Occlusion {
   [[nodiscard]] std::span<const std::uint32_t> triangles(std::size_t number) const;
 
   /// \returns the visibility of every object in this view, valid until the next call. Faces left out by View::culling
-  /// hide nothing. The answer is the same for all instruction sets. Objects are grouped, and groups that are hidden or
-  /// outside cost little; at worst O(objects + triangles of objects that may be seen).
+  /// hide nothing. The answer is the same for all instruction sets. Objects are grouped, and hidden or outside groups
+  /// cost little. At worst O(objects + triangles of objects that may be seen).
   /// \throws Error bad_argument as validate(view) does, and for a cell out of range.
   std::span<const ObjectSight> cull(const View& view, const OcclusionOptions& options = {},
                                     const Execution& execution = {}) &;
   /// \returns the visibility of a box of world space in the view of the last cull(), for a thing that is not in the
-  /// scene or that has moved. `outside` before the first cull(), and for boxes that are empty or have NaN. O(cells that
-  /// the box covers / 512).
+  /// scene or that has moved. The result is `outside` before the first cull(), and for boxes that are empty or contain
+  /// NaN. O(cells that the box covers / 512).
   [[nodiscard]] ObjectSight sight_of(const Box& box) const;
   /// sight_of() for many boxes. Precondition: as many sights as boxes. Only the first call allocates memory.
   void find_sights(std::span<const Box> boxes, std::span<ObjectSight> sights) const;

@@ -48,16 +48,16 @@ class Environment {
   /// limit_exceeded above 16384 x 8192.
   explicit Environment(Image equirectangular, const Execution& execution = {});
   /// A neutral room, grey below and brighter above, with soft boxes that metals reflect. The brightest box stands in
-  /// front of the model to the left, where the key light is. The room turns with the camera. White matt surfaces that
-  /// face down have radiance 0.15 from it, those that face up 0.36. Takes about three milliseconds.
+  /// front of the model to the left, where the key light is. The room turns with the camera. Its light gives white matt
+  /// surfaces a radiance of 0.15 if they face down, and of 0.36 if they face up. Takes about three milliseconds.
   [[nodiscard]] static Environment studio(const Execution& execution = {});
   /// A clear sky without a sun over dull ground. It is as bright as the studio.
   [[nodiscard]] static Environment sky(const Execution& execution = {});
   /// No light at all.
   [[nodiscard]] static Environment none();
 
-  /// True for studio(), which turns with the camera: ahead in the environment is ahead of the camera. In other
-  /// environments ahead is the direction in which NamedView::front looks.
+  /// True for studio(), in which ahead is the camera's viewing direction. In other environments ahead is the direction
+  /// in which NamedView::front looks.
   [[nodiscard]] bool turns_with_camera() const;
   /// The picture that the environment was made from, or null.
   [[nodiscard]] const Image* picture() const;
@@ -119,14 +119,14 @@ enum class SeeThrough : std::uint8_t {
 /// (K. Vaidyanathan et al. Coarse Pixel Shading. High-Performance Graphics 2014.)
 enum class ShadingRate : std::uint8_t {
   each_pixel,
-  /// In each block of 2 x 2 pixels, pixels all of whose samples see the same primitive share the colour of the first
-  /// such pixel. Fragments of several layers share a colour if their primitives, samples and places in the lists agree.
-  /// Down to a quarter of the colours are computed: for pictures that are replaced at once. Triangle edges stay as
-  /// sharp; textures, their holes, shadows and highlights get coarser.
+  /// For pictures that are replaced at once: as few as a quarter of the colours are computed. In each block of 2 x 2
+  /// pixels, pixels whose samples all see one and the same primitive share the colour of the first of them. In several
+  /// layers, fragments share a colour if their primitives, samples and places in the lists agree. Triangle edges stay
+  /// as sharp; textures, their holes, shadows and highlights get coarser.
   each_2x2,
 };
 
-/// The numbers in which translucent layers, and the samples of a pixel, are blended.
+/// The colour values in which translucent layers, and the samples of a pixel, are blended.
 enum class Blend : std::uint8_t {
   linear,  ///< linear light, as in nature
   srgb,    ///< sRGB, as viewers of SVG and PDF blend: half-transparent red over white is darker
@@ -143,7 +143,7 @@ struct AmbientOcclusion {
   std::optional<double> radius = std::nullopt;
 };
 
-/// How values above 1, the most that a picture holds, are brought into range.
+/// How values above 1, the greatest value of a picture, are brought into range.
 enum class ToneMapping : std::uint8_t {
   none,  ///< each channel is clamped to 1
   /// Filmic: higher contrast, and bright colours fade to white. (S. Hill's fit of ACES 1.0, as in three.js, where it is
@@ -209,7 +209,7 @@ struct ShadeInput {
   /// shade() makes its own.
   const RayIndex* index = nullptr;
 
-  /// The surface at every sample, or, of `pixels`, at the first sample of each pixel.
+  /// The surface at every sample of `visible`, or at the first sample of each pixel of `pixels`.
   [[nodiscard]] const Visible& first() const { return pixels ? pixels->first : *visible; }
   [[nodiscard]] const View& view() const { return pixels ? pixels->view : visible->view; }
 };
@@ -221,29 +221,29 @@ struct ScanInput {
   const RayIndex* index = nullptr;
 };
 
-/// The view in which the key light sees the surfaces of `visible`: surfaces visible in it are lit, all others are in
-/// shadow. For pictures in parts, where shade() gets the visible triangles alone; `bounds` are the whole scene's. None
-/// if nothing is visible, or without a key light. O(pixels).
+/// \returns the view in which the key light sees the surfaces of `visible`: surfaces that are visible in this view are
+/// lit, all others are in shadow. It serves pictures in parts, for which shade() gets only the visible triangles;
+/// `bounds` are those of the whole scene. None if nothing is visible, or if there is no key light. O(pixels).
 /// \throws Error bad_argument for light options out of range.
 [[nodiscard]] std::optional<View> key_light_view(const Visible& visible, const Box& bounds,
                                                  const LightOptions& light = {}, const Execution& execution = {});
 
-/// A picture with channels R, G, B, A. Each primitive is shaded once per pixel; the pixel is the mean over its samples.
-/// Where a see-through surface is visible, or `opacity` is below 1, the A-buffer of the same view finds all layers in
-/// depth order. The A-buffer works on tiles of 64 x 64 pixels, or, with a grid of sub-samples, on the whole picture.
-/// O(covered pixels). Borrows everything. The bytes do not depend on threads or instruction set.
+/// \returns a picture with channels R, G, B, A. Each primitive is shaded once per pixel; the pixel's colour is the mean
+/// over its samples. Where a see-through surface is visible, or `opacity` is below 1, the A-buffer of the same view
+/// finds all layers in depth order. The A-buffer works on tiles of 64 x 64 pixels, or, with a grid of sub-samples, on
+/// the whole picture. O(covered pixels). Borrows everything. The bytes do not depend on threads or instruction set.
 /// \throws Error bad_argument for an opacity, a grid, ambient occlusion or light options out of range; limit_exceeded
 /// for more than 4096 lights that count, or too much work for ray shadows; unsupported for Shading::depth of `pixels`.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
                           const Execution& execution = {});
-/// Shades `visible`, or `pixels`, without shadow results of the caller's.
+/// Shades `visible`, or `pixels`, if the caller has no results for shadows.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
                           const Execution& execution = {});
 [[nodiscard]] Image shade(const Surfaces& surfaces, const VisiblePixels& pixels, const ShadeOptions& options = {},
                           const Execution& execution = {});
 
-/// The picture that shade() makes, with the bytes that a PNG file of it holds. A bitmap needs a quarter of the memory,
-/// so it is for pictures that are only shown or saved.
+/// \returns the picture of shade() as the bytes that a PNG file of the picture holds. A bitmap needs a quarter of the
+/// memory of an image, so it suits pictures that are only shown or saved.
 [[nodiscard]] Bitmap shade_bitmap(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
                                   const Execution& execution = {});
 [[nodiscard]] Bitmap shade_bitmap(const Surfaces& surfaces, const Visible& visible, const ShadeOptions& options = {},
@@ -251,11 +251,11 @@ struct ScanInput {
 [[nodiscard]] Bitmap shade_bitmap(const Surfaces& surfaces, const VisiblePixels& pixels,
                                   const ShadeOptions& options = {}, const Execution& execution = {});
 
-/// Every fragment of the picture, nearest first, with channels R, G, B (premultiplied), A, Z, ZBack and the integers
-/// "primitive", "object" and "material". A is the part of the pixel that the fragment hides of what nearer fragments
-/// leave uncovered, at the sub-samples of the options. Compositing all fragments over a transparent background gives
-/// the picture that shade() makes with SeeThrough::always, edges included. Z and ZBack are the planar depth at the
-/// pixel's centre.
+/// \returns every fragment of the picture, nearest first, with channels R, G, B (premultiplied), A, Z, ZBack and the
+/// integers "primitive", "object" and "material". A is the share that the fragment hides of the part of the pixel that
+/// nearer fragments leave uncovered, at the sub-samples of the options. Compositing all fragments over a transparent
+/// background gives the picture that shade() makes with SeeThrough::always, edges included. Z and ZBack are the planar
+/// depth at the pixel's centre.
 /// O(fragments * sub-samples); 36 bytes a fragment, twice that while it works. Options as for shade().
 /// \throws Error as shade() and abuffer() do; unsupported for shadings other than lit, flat and normals.
 [[nodiscard]] DeepImage shade_deep(const Surfaces& surfaces, const ShadeInput& input, const ShadeOptions& options = {},
@@ -271,11 +271,11 @@ PreparedScene& prepared(Shader& shader, const Execution& execution);  // for dra
 
 /// Shades pictures of the same surfaces one after another. Each member returns the same bytes as the function of its
 /// name. Keeps data that do not depend on the view: mip levels, smooth normals, shadow casters, the studio; and each
-/// light's shadow map while the light sees the same. From the second picture of a size on, opaque scenes need no
-/// allocation, except for Shadows::rays, Blend::srgb, a shown environment, or materials and meshes without normals that
-/// come into sight. Memory: the last picture; a third of the visible texels; 12 bytes a triangle of meshes without
-/// normals; up to 8.25 MiB for each of up to 17 shadow maps; half a megabyte a thread; where needed, surfaces of the
-/// opaque part of a scene with glass, and an index for rays. Not for several threads at once.
+/// light's shadow map, as long as what the light sees does not change. From the second picture of a size on, opaque
+/// scenes need no allocation, except for Shadows::rays, Blend::srgb, a shown environment, or materials and meshes
+/// without normals that come into sight. Memory: the last picture; a third of the visible texels; 12 bytes a triangle
+/// of meshes without normals; up to 8.25 MiB for each of up to 17 shadow maps; half a megabyte a thread; where needed,
+/// surfaces of the opaque part of a scene with glass, and an index for rays. Not for several threads at once.
 class Shader {
  public:
   /// Borrows the surfaces and their scene, which must not change except by Surfaces::move(). Each call shows moved
@@ -307,11 +307,11 @@ class Shader {
   std::unique_ptr<State> state_;
 };
 
-/// A picture of a scan, with the same materials, lights and shadows as other pictures. Each primitive is shaded once
-/// per pixel; the pixel is the mean over the samples of the scan's camera. The key light is that of a pinhole camera in
-/// the same pose, and its shadow map holds what the scan sees. Textures are filtered by the distance between
-/// neighbouring rays. Behind blended materials, or with `opacity` below 1, the rays continue. Shading::depth shows the
-/// range.
+/// \returns a picture of a scan, with the same materials, lights and shadows as other pictures. Each primitive is
+/// shaded once per pixel; the pixel's colour is the mean over the samples of the scan's camera. The key light is that
+/// of a pinhole camera in the same pose, and its shadow map holds what the scan sees. Textures are filtered by the
+/// distance between neighbouring rays. Behind blended materials, or with `opacity` below 1, the rays continue.
+/// Shading::depth shows the range.
 /// O(rays). \throws Error bad_argument for a scan or options that do not fit.
 [[nodiscard]] Image shade(const Surfaces& surfaces, const ScanInput& input, const ShadeOptions& options = {},
                           const Execution& execution = {});

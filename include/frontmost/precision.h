@@ -29,35 +29,36 @@ struct DepthSetup {
   ClipDistances clip;
   DepthFormat format = DepthFormat::d24;
   bool reversed = false;      ///< depth 1 at the near plane, 0 at the far one
-  bool orthographic = false;  ///< depth is affine in distance, not in its reciprocal
+  bool orthographic = false;  ///< depth is affine in the distance, not in the distance's reciprocal
 };
 
 /// The resolvable gap: a surface exactly at `distance` and one at least this much farther away are stored as different
 /// values. The gap is one full step of the format, converted to distance. For integers it is about distance^2 (far -
 /// near) / (far near (2^n - 1)), for reversed floats at most 2^-23 of the distance. Float buffers are never finer than
-/// the float keys from which depths are made: 2^-24 to 2^-23 of the distance. Infinite if no farther distance differs
-/// from infinity.
+/// the float keys from which depths are made: 2^-24 to 2^-23 of the distance. Infinite if `distance` and infinity may
+/// be stored as the same value.
 /// \throws Error bad_argument unless near <= distance <= far, and for planes that make_projection() refuses.
 [[nodiscard]] double resolvable_gap(const DepthSetup& setup, double distance);
 
 /// The additional gap due to rounding of positions and transforms, for two surfaces that face the picture. Positions,
 /// coordinates relative to the eye, and the transform are floats. With vertices at most `reach` away from the eye and
-/// from the world's origin, each distance is wrong by up to 9 * 2^-24 * reach, plus 2 * 2^-24 of itself as a key; the
-/// gap is twice that. `reach` defaults to twice the distance, or, in parallel projection, twice the distance of the
-/// planes. Snapping to 1/256 pixel also moves surfaces that do not face the picture: each adds the change of its depth
-/// over 1/512 pixel along x and along y. \throws Error as resolvable_gap() does.
+/// from the world's origin, each distance is wrong by up to 9 * 2^-24 * reach, and its key adds 2 * 2^-24 of the
+/// distance; the gap is twice the sum. `reach` defaults to twice the distance, or, in parallel projection, twice the
+/// distance of the planes. Snapping to 1/256 pixel also moves surfaces that do not face the picture: each adds the
+/// change of its depth over 1/512 pixel along x and along y. \throws Error as resolvable_gap() does.
 [[nodiscard]] double rounding_gap(const DepthSetup& setup, double distance, std::optional<double> reach = {});
 
-/// The sum of both gaps: two surfaces this far apart, the nearer at `distance`, are resolved at every pixel of every
-/// picture. \throws Error as resolvable_gap() does.
+/// The resolvable gap and the rounding gap together: two surfaces this far apart, the nearer at `distance`, are
+/// resolved at every pixel of every picture. \throws Error as resolvable_gap() does.
 [[nodiscard]] double certain_gap(const DepthSetup& setup, double distance, std::optional<double> reach = {});
 
-/// The share of the format's values between the near plane and `distance`, 0 to 1.
+/// \returns the share of the format's values that lie between the near plane and `distance`, 0 to 1.
 [[nodiscard]] double share_of_values(const DepthSetup& setup, double distance);
 
-/// The smallest near distance with which `gap` is resolved at `distance`, for the far plane and format of `setup`. 0:
-/// any near plane resolves the gap. None: no near plane does. Reversed floats hardly depend on the near plane, so their
-/// result is 0 or none. \throws Error as resolvable_gap() does, and for a gap that is not positive.
+/// \returns the smallest near distance with which `gap` is resolved at `distance`, for the far plane and format of
+/// `setup`. 0 means that any near plane resolves the gap, and none that no near plane does. Reversed floats hardly
+/// depend on the near plane, so their result is 0 or none. \throws Error as resolvable_gap() does, and for a gap that
+/// is not positive.
 [[nodiscard]] std::optional<double> near_for_gap(const DepthSetup& setup, double distance, double gap);
 
 /// Distances for a table: the near plane, then 1, 2, 5, 10, 20..., then the far plane. An infinite far plane counts as
@@ -106,9 +107,9 @@ struct DepthFights {
 [[nodiscard]] DepthFights find_depth_fights(const Surfaces& surfaces, const ExactVisible& exact, const Visible& answer,
                                             const Execution& execution = {});
 
-/// A picture of the fights, with channels R, G, B, A, over a dimmed grey `backdrop`. Colours go from violet (an error
-/// of a millionth of the distance) over red to yellow (a tenth); light blue: nothing is seen. Shows the first sample of
-/// each pixel. \throws Error bad_argument if the backdrop has another size or lacks R, G, B.
+/// \returns a picture of the fights, with channels R, G, B, A, over a dimmed grey `backdrop`. Colours go from violet
+/// (an error of a millionth of the distance) over red to yellow (a tenth); light blue: nothing is seen. Shows the first
+/// sample of each pixel. \throws Error bad_argument if the backdrop has another size or lacks R, G, B.
 [[nodiscard]] Image fight_image(const DepthFights& fights, const Image& backdrop);
 
 // Areas at risk: which faces a depth buffer cannot tell apart, where, and what prevents it.
@@ -139,8 +140,8 @@ struct FightingFaces {
   PrimitiveId first = no_primitive, second = no_primitive;  ///< first < second; `clear` has no second
   FightKind kind = FightKind::close;
   double area = 0;  ///< square pixels, within the picture
-  /// The part of `area` at whose samples nothing is seen in front of both faces; estimated from thousands of samples if
-  /// the area is large.
+  /// The part of `area` in which no other surface is seen in front of both faces. The part is estimated from thousands
+  /// of samples if the area is large.
   double visible_area = 0;
   double distance = 0;                               ///< planar depth of the nearest point of the area
   std::uint32_t corner_begin = 0, corner_count = 0;  ///< range of FightAreas::corners
@@ -169,10 +170,10 @@ struct FightAreas {
   }
 };
 
-/// Finds the faces that a depth buffer of this format may show wrongly in the view. Considers culling, but not holes;
-/// leaves out faces behind everything that is seen at the samples around them. The result is the same for any number of
-/// threads. O(triangles + pairs of faces whose rectangles and depth ranges overlap + samples). An area takes some
-/// thousand samples, or all of its own if none of these sees it.
+/// Finds the faces that a depth buffer of this format may show wrongly in the view. Culling is considered, holes are
+/// not. Faces that lie behind everything seen at the samples around them are left out. The result is the same for any
+/// number of threads. O(triangles + pairs of faces whose rectangles and depth ranges overlap + samples). Some thousand
+/// samples of an area tell how much of it is seen, or all of its samples if none of the thousand sees it.
 /// \throws Error bad_argument as validate(view) does; limit_exceeded for more than 2^22 areas, 2^24 pairs of faces
 /// close to each other, 2^28 pairs to be examined, or 2^30 samples of areas and 64 for each sample of the picture.
 [[nodiscard]] FightAreas find_fighting_faces(const Surfaces& surfaces, const View& view, DepthFormat format,
@@ -196,10 +197,10 @@ struct OffsetRemedy {
   PolygonOffset offset;
 };
 
-/// The least offset, in units of powers of two up to 2^16, that makes the pair's second object seen at every sample of
-/// their areas where either object is nearest. Found by drawing up to 17 pictures. None if no such offset suffices, and
-/// for an object with itself or with the clear value. Precondition: `exact` and `fights` are of the same view, and
-/// `pair` is one of `fights`.
+/// The least offset, in units of powers of two up to 2^16, that makes the second object seen at every sample of the
+/// pair's areas at which one of the two objects is nearest. The offset is found by drawing up to 17 pictures. None if
+/// no such offset suffices, and for an object with itself or with the clear value. Precondition: `exact` and `fights`
+/// are of the same view, and `pair` is one of `fights`.
 [[nodiscard]] std::optional<OffsetRemedy> find_offset(const Surfaces& surfaces, const ExactVisible& exact,
                                                       const FightAreas& fights, const FightingObjects& pair,
                                                       const Execution& execution = {});
@@ -222,8 +223,8 @@ struct OffsetRemedy {
 // of the distance from the eye to the farthest vertex.
 //
 // Two possible answers differ by `depth` if both triangles contain the square, else by `edge`; the cuts of the near and
-// far planes count as edges. Any other difference is `unexplained`. So is a key, at any sample, that its triangle does
-// not have within the square, up to rounding.
+// far planes count as edges. Any other difference is `unexplained`. A sample is `unexplained`, too, if a key is one
+// that its triangle does not have anywhere in the square, up to rounding.
 
 /// Why two answers differ at a sample.
 enum class Difference : std::uint8_t {
@@ -239,7 +240,8 @@ enum class Difference : std::uint8_t {
 /// How far two answers agree.
 struct Agreement {
   View view;
-  /// Number of samples by Difference; `none`: both show the same triangle, at a right depth.
+  /// Number of samples by Difference. `none` counts the samples at which both answers show the same triangle at a right
+  /// depth.
   std::array<std::uint64_t, 5> counts{};
   Buffer<Difference> differences;  ///< in the order of Visible
 
@@ -255,8 +257,8 @@ struct Agreement {
 [[nodiscard]] Agreement check_agreement(const Surfaces& surfaces, const Visible& a, const Visible& b,
                                         const Execution& execution = {});
 
-/// Adds the reason `translucent`, for methods that answer in layers. Considers the samples that agree and where
-/// `behind` shows something: they become `translucent` if Material::is_see_through() holds for what `front` shows, else
+/// Adds the reason `translucent`, for methods that answer in layers. A sample at which the answers agree, but `behind`
+/// shows something, becomes `translucent` if Material::is_see_through() holds for the surface that `front` shows, else
 /// `unexplained`. O(samples). \throws Error bad_argument if the layers were made for different views; all must have the
 /// same view.
 void see_through(Agreement& agreement, const Surfaces& surfaces, const Visible& front, const Visible& behind);

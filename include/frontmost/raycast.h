@@ -41,8 +41,8 @@ class RayIndex {
 
   /// Updates the index after vertices or instances of the scene have moved; `surfaces` are of the same scene. Answers
   /// are to the bit those of a new index. The grouping of triangles and boxes stays, so queries grow slower as old
-  /// neighbours part. O(n) in parallel, about a third of the time of a new index. A new index is built instead if other
-  /// triangles can be met than before, or if the index holds thousands of coincident triangles. After an error or a
+  /// neighbours part. O(n) in parallel, about a third of the time of a new index. A new index is built instead if rays
+  /// can meet other triangles than before, or if the index holds thousands of coincident triangles. After an error or a
   /// cancelled call the index is empty.
   void refit(const Surfaces& surfaces, const Execution& execution = {});
 
@@ -53,7 +53,8 @@ class RayIndex {
   /// \throws Error bad_argument for a missing instance.
   void follow(const Surfaces& surfaces, std::uint32_t instance, const Execution& execution = {});
 
-  /// Number of triangles that a ray can meet: vertices are finite, and no two of them are the same in the mesh.
+  /// Number of triangles that a ray can meet: their vertices are finite, and no two vertices of one are the same in the
+  /// mesh.
   [[nodiscard]] std::uint32_t triangle_count() const;
   /// World-space bounds of these triangles; empty if there are none.
   [[nodiscard]] const Box& bounds() const;
@@ -64,12 +65,12 @@ class RayIndex {
   std::unique_ptr<RayTree> tree_;
 };
 
-/// The front-most triangle at every sample, by its ray from the eye (parallel projection: along the viewing axis).
-/// Vertices are not snapped: on which side a ray passes an edge is decided exactly on their floats. A ray through an
-/// edge or vertex meets every triangle that has it, so no ray leaks between neighbours; at equal keys the lower id
-/// wins. Near and far are tested at every sample. The result is the same to the bit for any number of threads and any
-/// instruction set. (S. Woop, C. Benthin, I. Wald. Watertight Ray/Triangle Intersection. 2013. A. Reshetov, A.
-/// Soupikov, J. Hurley. Multi-Level Ray Tracing Algorithm. 2005.)
+/// \returns the front-most triangle at every sample, along the sample's ray from the eye (in parallel projection, along
+/// the viewing axis). Vertices are not snapped: the side on which a ray passes an edge is decided exactly on the
+/// vertices' floats. A ray through an edge or vertex meets every triangle that has it, so no ray leaks between
+/// neighbours; at equal keys the lower id wins. Near and far are tested at every sample. The result is the same to the
+/// bit for any number of threads and any instruction set. (S. Woop, C. Benthin, I. Wald. Watertight Ray/Triangle
+/// Intersection. 2013. A. Reshetov, A. Soupikov, J. Hurley. Multi-Level Ray Tracing Algorithm. 2005.)
 /// \throws Error as validate(view) does.
 [[nodiscard]] Visible raycast(const RayIndex& index, const View& view, const Execution& execution = {});
 /// Builds an index for this one view and casts with it.
@@ -120,12 +121,12 @@ struct RayHit {
 };
 
 // Queries see both sides of every triangle. They are decided exactly on the floats of query and vertices, without
-// tolerance. A query meets a triangle if it passes through it. It does not meet a triangle that contains the ray's
-// origin or an end of the segment, or that lies along the line. A line through an edge or vertex meets every triangle
-// that has it, so nothing slips through a closed surface. Swapping the ends of a segment changes nothing, except at the
-// rims of holes, which are looked up at the rounded point. Only t is rounded, to doubles; at equal t the lower id wins.
-// Queries with non-finite coordinates, rays without direction and segments of length 0 meet nothing and are clear.
-// O(log n) each in ordinary scenes.
+// tolerance. A ray or segment meets a triangle if it passes through the triangle. It does not meet a triangle that
+// contains the ray's origin or an end of the segment, nor one whose plane contains the line. A line through an edge or
+// vertex meets every triangle that has it, so nothing slips through a closed surface. Swapping the ends of a segment
+// changes nothing, except at the rims of holes, which are looked up at the rounded point. Only t is rounded, to
+// doubles; at equal t the lower id wins. Queries with non-finite coordinates, rays without direction and segments of
+// length 0 meet nothing and are clear. O(log n) each in ordinary scenes.
 
 /// The nearest surface along a ray, or along a segment from its start.
 [[nodiscard]] RayHit closest_hit(const RayIndex& index, const Ray& ray);
@@ -135,23 +136,23 @@ struct RayHit {
 /// True if a segment meets no surface, so its ends see each other. Faster than closest_hit().
 [[nodiscard]] bool is_clear(const RayIndex& index, const Segment& segment);
 
-/// The nearest surface of each query, on all threads; answers do not depend on their number.
+/// Finds the nearest surface of each query, on all threads. Answers do not depend on the number of threads.
 /// \throws Error bad_argument unless there are as many answers as queries.
 void closest_hits(const RayIndex& index, std::span<const Ray> rays, std::span<RayHit> answers,
                   const Execution& execution = {});
 void closest_hits(const RayIndex& index, std::span<const Segment> segments, std::span<RayHit> answers,
                   const Execution& execution = {});
-/// 1 if the segment is clear, 0 if it is blocked.
+/// Sets the answer of each segment: 1 if the segment is clear, 0 if it is blocked.
 /// \throws Error as closest_hits() does.
 void are_clear(const RayIndex& index, std::span<const Segment> segments, std::span<std::uint8_t> answers,
                const Execution& execution = {});
 
-/// An exact point of a triangle: the mean of its vertices by weights, moved by `lift`. The mean is not rounded and lies
-/// in the triangle's plane, where a point of floats seldom lies.
+/// An exact point of a triangle: the mean of the vertices with `weights`, moved by `lift`. The mean is not rounded, so
+/// it lies in the triangle's plane, where a point made of floats seldom lies.
 struct TrianglePoint {
   PrimitiveId primitive = no_primitive;  ///< the triangle's id, if the index holds the triangle
   std::array<glm::vec3, 3> corners{};
-  glm::vec3 weights{1, 1, 1};  ///< with any sum; none negative, and not all zero
+  glm::vec3 weights{1, 1, 1};  ///< with any sum; no weight is negative, and not all are zero
   glm::vec3 lift{0};
 };
 
@@ -168,8 +169,8 @@ void are_lit(const RayIndex& index, std::span<const TrianglePoint> points, const
 //
 // Directions are in eye space, as for every camera: x right, y up, the eye looks down -z. The azimuth counts from
 // straight ahead to the right, the elevation from the horizon upwards. Azimuth a and elevation e are the direction (sin
-// a cos e, sin e, -cos a cos e). Pixel (x, y) has its ray at its centre, (x + 0.5, y + 0.5), rows from the top. Several
-// samples have their rays at a View's sample positions within the pixel.
+// a cos e, sin e, -cos a cos e). Pixel (x, y) has its ray at its centre, (x + 0.5, y + 0.5), rows from the top. With
+// several samples, the rays pass through the sample positions of a View within the pixel.
 
 /// An equirectangular picture: azimuth and elevation are affine over it. The left side is -180 degrees, straight
 /// behind; a quarter of the width is the left, the middle is straight ahead; the top is straight up. Pixels are square
@@ -196,12 +197,12 @@ struct Lidar {
   double first_azimuth = 0, last_azimuth = 2 * 3.14159265358979323846;
 };
 
-/// Any rays from one point, in a single row: other lenses, Risley scanners, sampling patterns.
+/// Any rays from one point, in a single row: for other lenses, Risley scanners or sampling patterns.
 struct RayPattern {
   std::vector<glm::vec3> directions;  ///< in eye space, of any length; zero or non-finite ones see nothing
 };
 
-/// The origin of the rays and their directions, both rounded to floats.
+/// A camera of rays from one point. The origin of the rays and their directions are rounded to floats.
 struct RayCamera {
   std::variant<Panorama, Fisheye, Lidar, RayPattern> model;
   glm::dmat4 world_from_eye{1.0};  ///< a rotation and a translation, relative to Scene::origin as in a View
@@ -210,14 +211,15 @@ struct RayCamera {
   double nearest = 0, farthest = std::numeric_limits<double>::infinity();
 };
 
-/// Elevations of `rings` rings, evenly spaced from `highest` down to `lowest`; their mean for a single ring.
+/// Elevations of `rings` rings, evenly spaced from `highest` down to `lowest`; a single ring gets the mean of the two.
 /// \throws Error bad_argument unless rings >= 1 and lowest <= highest.
 [[nodiscard]] std::vector<double> ring_elevations(int rings, double lowest, double highest);
 
 /// \throws Error bad_argument, limit_exceeded (more than most_samples rays in all) or singular_camera.
 void validate(const RayCamera& camera);
 
-/// Columns and rows of the rays: width and height; steps and rings; length of the pattern and 1.
+/// \returns the numbers of columns and rows of rays. Panoramas and fisheyes: width and height; scanners: steps and
+/// rings; patterns: number of directions and 1.
 [[nodiscard]] glm::ivec2 grid_of(const RayCamera& camera);
 
 /// The ray of a pixel's sample, in world space, the same bits on every machine. Its direction has unit length (to
@@ -237,24 +239,25 @@ struct RangeScan {
   }
 };
 
-/// The nearest surface along every ray, as closest_hits() finds it, if its range is one that the camera allows. Both
-/// sides of every triangle are seen. The result is the same to the bit for any number of threads and any instruction
-/// set. O(log n) a ray. Neighbours on the grid with nearly the same direction are cast together, five to fifteen times
-/// as fast as one by one. (I. Wald, P. Slusallek, C. Benthin, M. Wagner. Interactive Rendering with Coherent Ray
-/// Tracing. 2001.)
+/// \returns the nearest surface along every ray, as closest_hits() finds it, if the camera allows the surface's range.
+/// Both sides of every triangle are seen. The result is the same to the bit for any number of threads and any
+/// instruction set. O(log n) a ray. Neighbours on the grid with nearly the same direction are cast together, five to
+/// fifteen times as fast as one by one. (I. Wald, P. Slusallek, C. Benthin, M. Wagner. Interactive Rendering with
+/// Coherent Ray Tracing. 2001.)
 /// \throws Error as validate(camera) does.
 [[nodiscard]] RangeScan scan(const RayIndex& index, const RayCamera& camera, const Execution& execution = {});
 
 /// The point where a sample's ray meets the surface, in world space. Precondition: the ray meets a surface.
 [[nodiscard]] glm::dvec3 point_of(const RangeScan& scan, int x, int y, int sample = 0);
 
-/// Planar depth of every sample, in the scan's order, as a pinhole camera in that pose would find it. +inf where
-/// nothing is met, and for rays at 90 degrees or more from the viewing axis, which have no such distance.
+/// \returns the planar depth of every sample, in the scan's order, as a pinhole camera in that pose would find it. The
+/// depth is +inf where nothing is met, and for rays at 90 degrees or more from the viewing axis, for which no planar
+/// depth is defined.
 [[nodiscard]] Buffer<float> planar_depths(const RangeScan& scan, const Execution& execution = {});
 
-/// Angle of incidence of every sample, in the scan's order, in degrees between its ray and the normal of the triangle
-/// that it meets. 0 head-on, nearly 90 if the ray grazes the triangle, from either side; NaN where nothing is met.
-/// Precondition: the scan is of these surfaces, unchanged since.
+/// \returns the angle of incidence of every sample, in the scan's order: degrees between the sample's ray and the
+/// normal of the triangle that the ray meets. The angle is 0 head-on and nearly 90 if the ray grazes the triangle, from
+/// either side; NaN where nothing is met. Precondition: the scan is of these surfaces, unchanged since.
 [[nodiscard]] Buffer<float> incidence_angles(const RangeScan& scan, const Surfaces& surfaces,
                                              const Execution& execution = {});
 

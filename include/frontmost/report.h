@@ -23,8 +23,8 @@
 
 namespace frontmost {
 
-/// Defects of a mesh. Vertices are the same if their positions are (bit for bit, but +0 = -0), whatever their numbers.
-/// Nothing is rounded; no tolerance is used.
+/// Defects of a mesh. Vertices count as one if their positions are equal (bit for bit, except that +0 equals -0),
+/// whatever their numbers. Nothing is rounded; no tolerance is used.
 struct Oddities {
   std::uint64_t non_finite_triangles = 0;  ///< with a NaN or infinite coordinate; not counted in anything below
   std::uint64_t degenerate_triangles = 0;  ///< area exactly zero: vertices repeated, or on one line
@@ -32,7 +32,7 @@ struct Oddities {
   // Edges of all triangles with three different vertices.
   std::uint64_t boundary_edges = 0;      ///< edges of one triangle
   std::uint64_t non_manifold_edges = 0;  ///< edges of more than two triangles
-  std::uint64_t inconsistent_edges = 0;  ///< edges of two triangles that run along it the same way: one is inside out
+  std::uint64_t inconsistent_edges = 0;  ///< edges that two triangles run along the same way: one is inside out
 
   [[nodiscard]] bool any() const {
     return (non_finite_triangles | degenerate_triangles | duplicate_triangles | boundary_edges | non_manifold_edges |
@@ -59,7 +59,8 @@ struct MeshReport {
   std::uint64_t pieces = 0;  ///< number of parts connected at least by a vertex
   std::uint64_t shells = 0;  ///< number of parts connected by edges; at least `pieces`
   bool closed = false;       ///< has triangles and no boundary edge
-  /// Handles of all shells together. None unless the mesh is closed, without non-manifold and inconsistent edges.
+  /// Number of handles of all shells together. None unless the mesh is closed and has neither non-manifold nor
+  /// inconsistent edges.
   std::optional<std::uint64_t> genus;
 };
 
@@ -70,7 +71,8 @@ struct ObjectReport {
   std::uint64_t triangles = 0;
   Box bounds;       ///< world space, of the finite triangles
   double area = 0;  ///< world space, of the finite triangles
-  /// World space. None if the mesh has no genus. Shells wound the other way are hollows and subtracted.
+  /// Volume in world space. None if the mesh has no genus. Shells that are wound the other way count as hollows and are
+  /// subtracted.
   std::optional<double> volume;
 };
 
@@ -110,8 +112,8 @@ struct SceneReport {
   glm::dvec3 origin{0};          ///< Scene::origin, to which world space is relative
   Box bounds;                    ///< world space
   double area = 0;               ///< sum over all objects
-  std::optional<double> volume;  ///< sum over the objects that have a volume; none without any
-  /// Greatest rounding of a vertex because positions are floats: half a float step at the farthest coordinate.
+  std::optional<double> volume;  ///< sum over the objects that have a volume; none if no object has one
+  /// Greatest rounding error of a vertex, because positions are floats: half a float step at the farthest coordinate.
   double rounding = 0;
   std::vector<MeshReport> meshes;
   std::vector<ObjectReport> objects;
@@ -127,10 +129,10 @@ struct SceneReport {
 /// \throws Error as validate(scene) does, and limit_exceeded for a mesh of more than 2^29 triangles.
 [[nodiscard]] SceneReport inspect(const Scene& scene, const Execution& execution = {});
 
-/// Likely units of a model's coordinates, as metres to a unit, guessed from its greatest extent e. Millimetres if they
-/// make it 5 mm to 2 m, as of parts and prints. Metres if e is below 1, where millimetres would be a grain of sand.
-/// Centimetres, inches and metres in between. None for e below 0.001 or above 2000, or an empty box. Files that state
-/// their unit need no guess: SceneSource::metres_per_unit.
+/// Likely units of a model's coordinates, in metres, guessed from the greatest extent e of its bounds. Millimetres if e
+/// is from 5 to 2000: the size of parts and prints. Metres if e is below 1, because in millimetres the model would be a
+/// grain of sand. Centimetres, inches and metres if e is from 1 to 5. None if e is below 0.001 or above 2000, or the
+/// box is empty. Files that state their unit need no guess: SceneSource::metres_per_unit.
 [[nodiscard]] std::vector<double> likely_units(const Box& bounds);
 
 // Accounting: how much of each object is seen, how much lies beyond the frame, and which objects hide the rest.
@@ -143,8 +145,8 @@ struct SceneReport {
 //              +-------------+              cut        beyond the frame: %
 //            + - - - - - - - - - - - +
 //
-// An object is an instance of the scene. Samples are counted exactly, without tolerance: an object covers alone what
-// zbuffer() would show of it.
+// An object is an instance of the scene. Samples are counted exactly, without tolerance: the samples that an object
+// covers alone are those at which zbuffer() would show it.
 
 /// Pixels [x, x + width) x [y, y + height) from the picture's top left; x and y may be negative beyond the picture.
 struct PixelBox {
@@ -164,14 +166,14 @@ struct SampleSet {
 
 /// Samples of one instance in one view. The three shares add up to 1; all are 0 if the object covers no sample.
 struct ObjectAccount {
-  SampleSet alone;     ///< on the canvas
+  SampleSet alone;     ///< samples that the object covers alone, on the canvas
   SampleSet in_frame;  ///< the part of `alone` within the picture
   SampleSet visible;   ///< the part of `in_frame` that nothing hides
   /// Planar distance of the nearest visible sample, as in depths_of(); +inf if none is visible.
   float distance = std::numeric_limits<float>::infinity();
   /// Mean position of the visible samples, in pixels from the picture's top left corner; 0 if none is visible.
   glm::dvec2 centroid{0};
-  /// True: the object reaches across the near plane. Its part in front of the plane counts nowhere.
+  /// True: the object reaches across the near plane. Its part in front of the plane is counted nowhere.
   bool is_cut_by_near = false;
 
   [[nodiscard]] double visible_share() const { return share(visible.count); }
@@ -195,32 +197,33 @@ struct HiddenSamples {
 
 struct AccountingOptions {
   /// Size of the canvas on which objects are counted alone, as a multiple of the picture, 1 to 16; the picture lies in
-  /// its middle. 1: the picture itself, so that no object is cut. 3, as in BOP, has room for any object that is half in
-  /// the picture and no larger. Rounded down to whole pixels on each side, and at most 16384 pixels wide or high.
+  /// its middle. 1: the picture itself, so that no object is cut. 3, as in BOP: room for any object that is no larger
+  /// than the picture and half in it. Rounded down to whole pixels on each side, and at most 16384 pixels wide or high.
   double canvas = 3;
-  /// True: also finds hidden_by_any and hidden_only_by. Takes some ten times as long, and 20 MiB or more.
+  /// True: hidden_by_any and hidden_only_by are found, too. This takes some ten times as long, and 20 MiB or more.
   bool all_hiders = false;
 };
 
 struct Accounting {
   PixelBox canvas;                     ///< pixels on which objects were counted alone
   std::vector<ObjectAccount> objects;  ///< by instance
-  std::uint64_t background = 0;        ///< samples that see nothing; together with all visible samples, the picture's
-  /// Samples in frame that see `hider` in place of `object`; by object, then by hider. The counts of one object add up
-  /// to its hidden samples.
+  std::uint64_t background = 0;        ///< samples that see nothing: all but the visible samples of the objects
+  /// Samples in frame that see `hider` in place of `object`, sorted by object, then by hider. The counts of one object
+  /// add up to its number of hidden samples.
   std::vector<HiddenSamples> hidden_by_front;
   /// Samples in frame at which `hider` is in front of `object`, even if others are as well; in the same order. Empty
   /// unless AccountingOptions::all_hiders.
   std::vector<HiddenSamples> hidden_by_any;
-  /// Samples at which only `hider` is in front of `object`: they appear when `hider` is removed. Empty as above.
+  /// Samples at which only `hider` is in front of `object`: they appear when `hider` is removed. Empty unless
+  /// AccountingOptions::all_hiders.
   std::vector<HiddenSamples> hidden_only_by;
 };
 
 /// Accounts for every object in a view. `visible` is the answer of zbuffer() or a ZBuffer for these surfaces; with
 /// other methods, which do not snap vertices, sums hold only approximately. The result is the same for any number of
 /// threads and every instruction set. O(triangles + rows of pixels that each object touches + samples); memory beside
-/// the result: about 8 bytes a run of samples that see the same object, and a bit for each sample of the canvas and
-/// thread.
+/// the result: about 8 bytes for each run of samples that see the same object, and in each thread a bit for each sample
+/// of the canvas.
 /// \throws Error bad_argument as validate(view) does, for a canvas out of range, and for a `visible` of other surfaces.
 [[nodiscard]] Accounting account(const Surfaces& surfaces, const Visible& visible,
                                  const AccountingOptions& options = {}, const Execution& execution = {});
@@ -234,8 +237,8 @@ struct HidingOrder {
   std::vector<std::vector<std::uint32_t>> cycles;
 };
 
-/// The hiding order of `object_count` objects by pairs such as Accounting::hidden_by_front. O(objects + pairs * log).
-/// Source: R. Tarjan. Depth-First Search and Linear Graph Algorithms. 1972.
+/// Finds the hiding order of `object_count` objects from pairs such as Accounting::hidden_by_front. O(objects + pairs *
+/// log). Source: R. Tarjan. Depth-First Search and Linear Graph Algorithms. 1972.
 /// \throws Error bad_argument for a pair of equal objects, or of numbers that are not below `object_count`.
 [[nodiscard]] HidingOrder find_hiding_order(std::size_t object_count, std::span<const HiddenSamples> pairs);
 
@@ -259,9 +262,9 @@ struct PixelMask {
 /// The pixels of a mask that count: visible ones, or visible and hidden ones.
 enum class MaskPart : std::uint8_t { visible, whole };
 
-/// A mask as COCO's compressed run lengths, in a picture of `size`: columns from the left, each from the top,
-/// alternating runs of 0 and 1, as COCO's mask API writes them. O(pixels of the box).
-/// Source: T.-Y. Lin et al. Microsoft COCO: Common Objects in Context. 2014.
+/// A mask as COCO's compressed run lengths, in a picture of `size`, as COCO's mask API writes them. Runs of 0 and 1
+/// alternate along the columns, from the leftmost column on, each column from the top. O(pixels of the box). Source:
+/// T.-Y. Lin et al. Microsoft COCO: Common Objects in Context. 2014.
 [[nodiscard]] std::string coco_runs(const PixelMask& mask, MaskPart part, const glm::ivec2& size);
 /// A mask as polygons along the sides of pixels: alternating x and y, in pixels from the picture's top left. The
 /// polygons do not overlap, have no holes, and fill the mask exactly, also by the rule of COCO's mask API. O(pixels of
@@ -318,7 +321,7 @@ enum class SightReason : std::uint8_t {
 /// \returns "empty", "behind_eye", ...
 [[nodiscard]] std::string_view name(SightReason reason);
 
-/// Number of an object's triangles by place. Each counts once, at the first place that holds for all of the triangle.
+/// Number of an object's triangles by place. Each triangle counts once, at the first place that holds for all of it.
 struct TrianglePlaces {
   std::uint64_t empty = 0;  ///< with a non-finite vertex, or without area
   std::uint64_t behind_eye = 0, nearer_than_near = 0, beyond_far = 0;
@@ -354,7 +357,7 @@ enum class RemedyKind : std::uint8_t {
 struct Remedy {
   RemedyKind kind = RemedyKind::none;
   double value = 0;
-  /// To the right and upwards where positive: radians for `turn`, scene units for `move`.
+  /// Amounts, positive to the right and upwards: radians for `turn`, scene units for `move`.
   double right = 0, up = 0;
   /// Numbers of all objects in front of the object at one place, where it is seen once they are removed. Of four places
   /// spread over the object, the one with the fewest objects is taken.
@@ -372,19 +375,19 @@ struct Explanation {
   std::uint32_t object = no_index;  ///< an instance
   SightReason reason = SightReason::empty;
   TrianglePlaces triangles;
-  /// If no sample is covered: area in the picture of the parts that would be seen of the object alone, in square
-  /// pixels, exact as in visible_faces(); 0 if it is seen edge-on.
+  /// If the object covers no sample: the area in the picture that would be seen of it if it were alone, in square
+  /// pixels, exact as in visible_faces(). 0 if the object is seen edge-on.
   double pixels = 0;
-  bool is_all_holes = false;  ///< if transparent: by holes of its materials, not by its opacity
+  bool is_all_holes = false;  ///< if transparent: true: all samples are holes; false: its opacity is 0
   double visible_share = 0, hidden_share = 0, cut_share = 0;  ///< as in ObjectAccount
   std::vector<HiderShare> hiders;                             ///< front-most objects, the greatest share first
   Remedy remedy;
 };
 
-/// Explains every object, by number. `visible` is the answer of zbuffer() for these surfaces, `accounts` that of
-/// account() for it. The result is the same for any number of threads and every instruction set. O(triangles): one to
-/// seven times the time of account(), and that of visible_faces() for each object without a sample. \throws Error as
-/// account() does, and bad_argument for accounts of other objects.
+/// Explains every object, by number. `visible` is the answer of zbuffer() for these surfaces, and `accounts` is the
+/// answer of account() for `visible`. The result is the same for any number of threads and every instruction set.
+/// O(triangles): one to seven times the time of account(), and that of visible_faces() for each object without a
+/// sample. \throws Error as account() does, and bad_argument for accounts of other objects.
 [[nodiscard]] std::vector<Explanation> explain_all(const Surfaces& surfaces, const Visible& visible,
                                                    const Accounting& accounts, const Execution& execution = {});
 /// Explains one object. Takes the time of zbuffer() and account(). \throws Error as validate(view) does, and
@@ -400,8 +403,8 @@ struct Explanation {
 /// Unprintable characters are written as by printable_text().
 class ObjectNames {
  public:
-  /// Keeps a reference to the scene. Functions that take names accept a scene as well; keep the names to write many
-  /// texts. O(objects).
+  /// Keeps a reference to the scene. Functions that take names accept a scene as well; keep an ObjectNames if you write
+  /// many texts. O(objects).
   ObjectNames(const Scene& scene);
   [[nodiscard]] std::string operator[](std::uint32_t object) const;
 
@@ -430,8 +433,8 @@ class ObjectNames {
 /// The seen part of one triangle.
 struct VisibleFace {
   PrimitiveId id = no_primitive;
-  double pixels = 0;       ///< in the picture, in square pixels; more than 0
-  double area = 0;         ///< on the triangle, in scene units squared
+  double pixels = 0;       ///< area in the picture, in square pixels; more than 0
+  double area = 0;         ///< area on the triangle, in scene units squared
   double solid_angle = 0;  ///< steradians, from the eye; 0 in parallel projection, whose eye is infinitely far away
 };
 
@@ -440,12 +443,12 @@ struct VisibleFaces {
   std::vector<VisibleFace> faces;  ///< by id, ascending; only triangles that are seen
 };
 
-// How visible_faces() works: the picture is divided into cells, and a cell in which something ends into smaller ones.
-// (J. Warnock. A Hidden Surface Algorithm for Computer Generated Halftone Pictures. 1969.) In a cell where no surface
-// ends, and the nearest surface lies in front of all others, the visible faces are known without cutting. In the
-// smallest cells triangles cut each other. Cuts that would leave less than 2^-30 pixel on one side are not made, so
-// narrower parts are not told apart from their neighbours. The limit of 2^31 steps is 15 times what the most crowded of
-// 237 models takes.
+// How visible_faces() works: the picture is divided into cells, and a cell in which a surface ends is divided into
+// smaller cells. (J. Warnock. A Hidden Surface Algorithm for Computer Generated Halftone Pictures. 1969.) In a cell
+// where no surface ends, and the nearest surface lies in front of all others, the visible faces are known without
+// cutting. In the smallest cells triangles cut each other. Cuts that would leave less than 2^-30 pixel on one side are
+// not made, so narrower parts are not told apart from their neighbours. The limit of 2^31 steps is 15 times what the
+// most crowded of 237 models takes.
 
 /// Finds every triangle of which a part is seen within the picture, between near and far, with the area of that part.
 /// Vertices are not snapped, so triangles far smaller than a pixel are found. No place counts twice: where triangles
@@ -466,15 +469,16 @@ struct SeenFace {
   double largest_pixels = 0;  ///< largest area that a view shows, in square pixels
 };
 
-/// The triangles that are seen in any of `views`, by id, ascending. Costs visible_faces() for each view, less what does
-/// not depend on the view. \throws Error as visible_faces() does.
+/// The triangles that are seen in any of `views`, by id, ascending. Takes the time of visible_faces() for each view,
+/// but does work that does not depend on the view only once. \throws Error as visible_faces() does.
 [[nodiscard]] std::vector<SeenFace> faces_ever_seen(const Surfaces& surfaces, std::span<const View> views,
                                                     const Execution& execution = {});
 
-/// A scene with only the triangles `ids` of another one, such as those of faces_ever_seen(). Objects without a kept
-/// triangle are removed; every other object gets a mesh of its own. Unused vertices and curved primitives are removed.
-/// Order, names, places, materials and textures stay. Mesh::face_ids holds the polygon of the original mesh for each
-/// triangle. O(size of the scene). \throws Error bad_argument for ids that do not ascend, or are not in the scene.
+/// \returns a scene with only the triangles `ids` of `scene`, such as those of faces_ever_seen(). Objects without a
+/// kept triangle are removed; every other object gets a mesh of its own. Unused vertices and curved primitives are
+/// removed. Order, names, places, materials and textures stay. Mesh::face_ids holds the polygon of the original mesh
+/// for each triangle. O(size of the scene). \throws Error bad_argument for ids that do not ascend, or are not in the
+/// scene.
 [[nodiscard]] Scene keep_faces(const Scene& scene, std::span<const PrimitiveId> ids);
 
 // Reports as files of data sets: COCO's annotations, scenes of BOP, and masks.
@@ -496,7 +500,7 @@ struct DatasetOptions {
   bool coco_polygons = false;             ///< true: COCO masks are polygons; false: run lengths
   BopVisible bop_visible = BopVisible::exact;
   bool are_masks_numbered = false;  ///< true: names of masks begin with the number of the view, for several views
-  /// Names of objects, or of categories, without annotation, mask or pose. These objects still hide others.
+  /// Names of objects, or of categories, that get no annotation, mask or pose. These objects still hide others.
   std::vector<std::string> leave_out;
 };
 

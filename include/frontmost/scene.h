@@ -47,10 +47,10 @@ inline constexpr std::uint32_t max_texcoord_sets = 4;
 
 /// A triangle mesh in its own space. A triangle whose vertices run counter-clockwise faces the viewer.
 ///
-/// A mesh with `spheres` or `patches` is curved. Its spheres and then its patches are numbered as curved primitives.
-/// Its triangles only tessellate them, as tessellate() does for a view. Curved primitives that are not finite, and
-/// spheres whose radius is not positive, are never seen but keep their number. A curved mesh has at most one material
-/// and one set of texture coordinates; colours of its triangles are ignored.
+/// A mesh with `spheres` or `patches` is curved. These curved primitives are numbered together, spheres first. The
+/// triangles of a curved mesh only approximate its curved primitives; tessellate() makes them for a view. Curved
+/// primitives that are not finite, and spheres whose radius is not positive, are never seen but keep their number. A
+/// curved mesh has at most one material and one set of texture coordinates; colours of its triangles are ignored.
 struct Mesh {
   std::string name;
   /// Vertex positions in any unit: the file's, minus `origin`. Non-finite positions are kept.
@@ -111,8 +111,8 @@ struct TextureUse {
 };
 
 /// The metallic-roughness material of glTF 2.0, with the layers of its extensions, which are off by default. Colours
-/// are linear. Factors multiply the values of their textures. A number out of its range counts as the nearest in range,
-/// and one that is not a number as the default.
+/// are linear. Factors multiply the values of their textures. A number out of its range counts as the nearest number in
+/// range, and NaN counts as the default.
 struct Material {
   enum class Alpha : std::uint8_t { opaque, mask, blend };
 
@@ -145,7 +145,7 @@ struct Material {
     float factor = 0;           ///< 0 to 1: the part of the unreflected light that passes
     TextureUse factor_texture;  ///< R
   };
-  /// The medium that fills a closed mesh that transmits light, behind its front sides. KHR_materials_volume.
+  /// The medium in a closed mesh that transmits light: it fills the space behind the front sides. KHR_materials_volume.
   struct Volume {
     float thickness = 0;           ///< in the mesh's unit; 0: no medium, the surface is a thin wall
     TextureUse thickness_texture;  ///< G
@@ -184,7 +184,7 @@ struct Material {
 [[nodiscard]] std::array<TextureUse*, 14> texture_uses_of(Material& material);
 [[nodiscard]] std::array<const TextureUse*, 14> texture_uses_of(const Material& material);
 
-/// A kind of object, as data sets count them.
+/// A kind of object, as data sets define it.
 struct Category {
   std::string name;
   std::uint32_t number = 0;  ///< number in the data set: the category_id of COCO, the obj_id of BOP
@@ -238,8 +238,8 @@ enum class ModelFormat : std::uint8_t { stl, ply, obj, off, gltf, threemf, scene
 /// Facts about the files that a scene was read from. Scenes made by code have none.
 struct SceneSource {
   std::optional<ModelFormat> format;  ///< format of the first model
-  /// Length of a unit of the coordinates, if the first model's file states it: 1 for glTF, the named unit for 3MF.
-  /// Nothing is scaled by it.
+  /// Length in metres of one unit of the coordinates, if the first model's file states it: 1 for glTF, the named unit
+  /// for 3MF. No coordinate is scaled by this length.
   std::optional<double> metres_per_unit;
   /// Every file that was opened: the model, and the material libraries, buffers and textures that it names. Each is
   /// listed once per model, by its path without links, sorted by name.
@@ -280,8 +280,8 @@ void add(Scene& scene, Scene part);
 /// The origin about which floats keep the most details of a scene. A scene is far from zero if, on some axis, all of it
 /// lies beyond four times its size and 1024 units, or beyond 128 times its size. The origin of a far scene is, on each
 /// axis on which the scene is four sizes away, the roundest number nearby. Elsewhere it is zero. A model that was moved
-/// by a round number is thus moved back to the bit. Near zero a few vertices are examined, otherwise all. Precondition:
-/// validate(scene) passes.
+/// by a round number is thus moved back to the bit. A few vertices suffice to recognise a scene near zero; otherwise
+/// all are examined. Precondition: validate(scene) passes.
 [[nodiscard]] glm::dvec3 fitting_origin(const Scene& scene);
 /// The fitting origin of points in doubles. Points that are not finite as floats are ignored. O(points).
 [[nodiscard]] glm::dvec3 fitting_origin(std::span<const glm::dvec3> points);
@@ -344,8 +344,8 @@ class Surfaces {
   /// changed scene. An Occlusion and a Shader follow at their next call, a RayIndex by RayIndex::follow(). Nothing else
   /// may read the surfaces or the scene meanwhile. O(triangles of the instance + log(instances)); with clusters, the
   /// first call is O(triangles). Clusters keep their triangles, so pictures grow slower as old neighbours part.
-  /// Clusters are rebuilt if vertices become finite or cease to be. If a RayIndex shares triangles with holes, all of
-  /// these are copied.
+  /// Clusters are rebuilt if vertices become finite or cease to be. If a RayIndex still uses triangles with holes, all
+  /// of these are copied.
   /// \throws Error bad_argument for another scene, a missing instance or a non-finite transform; then nothing moves.
   void move(Scene& scene, std::uint32_t instance, const glm::dmat4& world_from_mesh, const Execution& execution = {});
 

@@ -27,8 +27,9 @@
 namespace frontmost {
 
 /// The processes that stream one model together, each a part of it, on one machine or many: MPI's ranks, or anything
-/// else with these three operations. All ranks call the same operations in the same order, as their Streams do. A call
-/// ends when all that it needs has come from the others. Exceptions of an operation are passed on.
+/// else with these three operations. All ranks call the same operations in the same order, because every rank calls the
+/// same functions of its Stream. A call returns when it has received what it needs from the other ranks. Exceptions of
+/// an operation are passed on.
 class Ranks {
  public:
   using Message = std::vector<std::byte>;
@@ -51,13 +52,13 @@ struct StreamOptions {
   std::uint32_t triangles_at_once = 1u << 19;
   /// Ranks that stream the model together; borrowed, must outlive the stream. Null: this process streams all of it.
   Ranks* ranks = nullptr;
-  /// For each file, the rank that alone reads its triangles. -1, or no entry: all ranks read it, taking turns by
-  /// pieces.
+  /// For each file, the rank that alone reads its triangles. -1, or no entry: all ranks read the file, and take turns
+  /// by pieces.
   std::vector<int> readers = {};
 };
 
-/// The part of a stream that some views show: a scene of the visible triangles, and of those that their smooth normals
-/// need. Functions of surfaces and a Visible return for an Excerpt what they return for the whole model.
+/// The part of a stream that some views show: a scene of the visible triangles, and of the neighbours that their smooth
+/// normals need. Functions of surfaces and a Visible return for an Excerpt what they return for the whole model.
 class Excerpt {
  public:
   Excerpt();
@@ -72,7 +73,8 @@ class Excerpt {
   std::optional<Visible> seen_by_light;
   /// Numbers of the triangles in the stream, by id of surfaces(); ascending.
   std::vector<PrimitiveId> stream_ids;
-  /// `of_excerpt` with ids of the stream: to the bit zbuffer()'s answer for the whole model.
+  /// \returns `of_excerpt` with the stream's ids in place of those of surfaces(). The result is to the bit zbuffer()'s
+  /// answer for the whole model.
   [[nodiscard]] Visible in_stream(Visible of_excerpt) const;
 
  private:
@@ -114,9 +116,9 @@ class Stream {
   Stream(Stream&&) noexcept;
   Stream& operator=(Stream&&) noexcept;
 
-  /// Everything but triangles: objects, materials, textures, up axis, and warnings, which are complete after a pass.
-  /// Bounds, outline and views are relative to its origin. That origin is the first file's, as load() sets it, but zero
-  /// for an STL file from a pipe.
+  /// The scene without its triangles: objects, materials, textures, up axis, and warnings, which are complete after a
+  /// pass. Bounds, outline and views are relative to its origin. That origin is the first file's, as load() sets it,
+  /// but zero for an STL file from a pipe.
   [[nodiscard]] const Scene& scene() const;
   /// True if the model can be read again. \see passes()
   [[nodiscard]] bool can_repeat() const;

@@ -91,9 +91,9 @@ enum class PoseConvention : std::uint8_t {
 [[nodiscard]] glm::dmat4 pose_of(const glm::dmat4& world_from_eye, PoseConvention convention);
 
 /// Triangles that are left out because of the way they face. Counter-clockwise on the screen is front. A triangle that
-/// is seen edge-on (N.V = 0, zero area after snapping) has no facing and covers nothing. `material` leaves out back
-/// faces whose material is not Material::double_sided, as glTF specifies; light passes through such a triangle if it
-/// comes from behind it. The other modes do not change shadows.
+/// is seen edge-on (N.V = 0, zero area after snapping) is neither front nor back and covers nothing. `material` leaves
+/// out back faces whose material is not Material::double_sided, as glTF specifies; light passes through such a triangle
+/// if it comes from behind it. The other modes do not change shadows.
 enum class Culling : std::uint8_t { none, back, front, both, material };
 
 /// The greatest width * height * samples of a view: 16384 x 16384 pixels of one sample, 2 GiB of ids and keys.
@@ -173,7 +173,7 @@ struct FrameOptions {
   NamedView direction = NamedView::three_quarter;
   bool orthographic = false;
   double min_fov = 0.5235987755982988;  ///< field of view along the shorter side of the image, in radians (30 degrees)
-  double margin = 0.05;                 ///< on each side, as a part of the picture
+  double margin = 0.05;                 ///< margin on each side, as a fraction of the picture
   int samples = 1;
   Culling culling = Culling::none;
   /// Viewing and upward direction; if set, they replace those of `direction`. Any length but zero.
@@ -215,10 +215,10 @@ struct FrameOptions {
 [[nodiscard]] bool has_curved(const Scene& scene);
 
 /// \returns the scene with its curved meshes cut into new triangles. In `view`, a point of a triangle is at most
-/// `pixels` away from its point of the curved surface. So outlines are right to `pixels`, plus snapping to 1/256 pixel.
-/// The bound is proven from second derivatives; the true error is mostly two to four times smaller. Parts before the
-/// near plane are cut coarsely. Instances that need different fineness get different meshes. Meshes stay curved;
-/// Mesh::face_ids names each triangle's curved primitive. O(size of the scene + triangles made).
+/// `pixels` away from the corresponding point of the curved surface. So outlines are right to `pixels`, plus snapping
+/// to 1/256 pixel. The bound is proven from second derivatives; the true error is mostly two to four times smaller.
+/// Parts before the near plane are cut coarsely. Instances that need different fineness get different meshes. Meshes
+/// stay curved; Mesh::face_ids names each triangle's curved primitive. O(size of the scene + triangles made).
 /// \throws Error bad_argument unless pixels > 0; limit_exceeded beyond 2^26 triangles made, naming instance and mesh;
 /// and as validate() does. (D. Filip, R. Magedson, R. Markot. Surface algorithms using bounds on derivatives. 1986.)
 [[nodiscard]] Scene tessellate(const Scene& scene, const View& view, double pixels);
@@ -267,7 +267,7 @@ void merge(Visible& into, const Visible& other, PrimitiveId first_id = 0, const 
 /// Packs every sample into one number, of which merge() keeps the greater. The upper half is the key's bits, the lower
 /// half the inverted id; 0 where nothing is seen. A maximum of uint64, such as MPI_MAX, thus merges parts on different
 /// machines. `first_id` is added to ids, as in merge(). O(samples), in parallel.
-/// \throws Error bad_argument if the planes do not have the size of their view; limit_exceeded if an id would reach
+/// \throws Error bad_argument if the arrays do not match the size of their view; limit_exceeded if an id would reach
 /// no_primitive.
 [[nodiscard]] Buffer<std::uint64_t> pack(const Visible& visible, PrimitiveId first_id = 0,
                                          const Execution& execution = {});
@@ -293,7 +293,7 @@ void merge(Visible& into, const Visible& other, PrimitiveId first_id = 0, const 
 struct VisiblePixels {
   static constexpr int run = 16;  ///< pixels of a row that share one entry of `mixed`, from a multiple of 16 on
 
-  View view;      ///< with all samples
+  View view;      ///< the view with all of its samples
   Visible first;  ///< sample 0, as a Visible of one sample
   /// [y][x / run]: bit x % run is set if the samples of the pixel see different primitives.
   Buffer<std::uint16_t> mixed;

@@ -66,7 +66,8 @@ class ZBuffer {
 /// Storage of depths: unsigned integers of n bits, meaning value / (2^n - 1), or a 32-bit float.
 enum class DepthFormat : std::uint8_t { d8, d16, d24, f32 };
 
-/// Comparison of a fragment's depth with the stored one that lets the fragment pass; from GL_NEVER to GL_ALWAYS.
+/// Comparison that lets a fragment pass: the fragment's depth is compared with the stored one, by GL_NEVER to
+/// GL_ALWAYS.
 enum class DepthFunc : std::uint8_t { never, less, equal, less_equal, greater, not_equal, greater_equal, always };
 
 /// Rounds a depth to `format`. Integers: the nearest multiple of 1 / (2^n - 1), ties to even, after clamping to [0, 1].
@@ -88,7 +89,7 @@ struct PolygonOffset {
 /// The state that decides which fragments pass. The defaults are OpenGL's.
 struct DepthState {
   DepthFunc func = DepthFunc::less;
-  bool mask = true;                      ///< passing fragments store their depth; without it they are still seen
+  bool mask = true;                      ///< passing fragments store their depth; false: they are only seen
   double range_near = 0, range_far = 1;  ///< glDepthRange: 0 to 1 each, in either order
   /// False: near maps to range_near and far to range_far (opengl_depth with OpenGL's clip volume, zero_to_one_depth
   /// with Direct3D's). True: the reverse (gortler_depth, reversed_depth); compare with `greater` and clear to 0.

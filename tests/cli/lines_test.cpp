@@ -220,7 +220,7 @@ TEST_F(LinesCommand, SheetsHaveDimensionsWhereTheyAreAskedFor) {
   EXPECT_EQ(succeed(pegs + " --hidden dashed").err, "");
   write("low.obj", peg_obj(5, 20, 12));
   EXPECT_THAT(succeed("lines low.obj --up +z --views front,top --dimensions -o a.svg").err,
-              HasSubstr("warning: cylinders of 7 to 17 sides, which count as prisms and have no diameter: 1\n"));
+              HasSubstr("warning: cylinders of 7 to 17 sides count as prisms and get no diameter: 1\n"));
 }
 
 TEST_F(LinesCommand, ViewsStandInLine) {

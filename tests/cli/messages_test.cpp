@@ -116,7 +116,7 @@ TEST_F(Messages, OfCamerasThatAreNoPinholes) {
 
 TEST_F(Messages, OfCompare) {
   write("file", "");
-  expect_usage({{"compare -", "compare reads its model several times: give a file"},
+  expect_usage({{"compare -", "the command compare reads its model several times: give a file"},
                 {"compare cube.stl --samples 64", "--samples: compare takes 1, 2, 4, 8 or 16"}});
   expect_could_not({{"compare cube.stl -o file/page", "file/page: cannot be made into a folder"},
                     {"compare cube.stl -o file", "file: cannot be made into a folder"}});
@@ -133,7 +133,7 @@ TEST_F(Messages, OfOutputs) {
        {"render cube.stl -o a.png --layers 2", "--layers: no output has {layer} in its name"},
        {"render cube.stl -o cube.stl", "cube.stl: "},
        {"render cube.stl -o a.png --depth a.png",
-        "a.png: two outputs have this name; only .exr files that are not deep hold several"},
+        "a.png: two outputs have this name; only an .exr file that is not deep can hold several outputs"},
        {"render cube.stl -o a.png --reference a.png", "a.png: is both the reference and an output"}});
   expect_could_not(
       {{"render cube.stl --format png -o folder", "folder: is a folder"},

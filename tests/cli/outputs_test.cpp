@@ -63,7 +63,8 @@ TEST(Outputs, FormatsThatCannotHoldAKindAreRefusedEarly) {
   for (const char* name : {"a.jpg", "a.jpeg", "a.webp"})
     for (const OutputKind kind : {OutputKind::depth, OutputKind::ray_distance, OutputKind::window_depth,
                                   OutputKind::normals, OutputKind::primitive_ids, OutputKind::object_ids})
-      EXPECT_THAT(complaint({{kind, name}}), HasSubstr("JPEG and WebP hold only pictures; use .exr, .npy or .png"));
+      EXPECT_THAT(complaint({{kind, name}}),
+                  HasSubstr("JPEG and WebP hold only colour pictures; use .exr, .npy or .png"));
   OutputSettings transparent;
   transparent.background = std::nullopt;
   transparent.files = {{OutputKind::picture, "a.webp"}};

@@ -240,7 +240,7 @@ TEST_F(Render, OutputsAreCheckedBeforeAnyWork) {
   // The model does not exist: if it were read first, the message would be about it.
   expect_failure("render none.stl -o missing/a.png", 1, "the folder missing does not exist");
   expect_failure("render none.stl -o a.tif", 2, "a.tif: the suffix names no format");
-  expect_failure("render none.stl --depth a.jpg", 2, "a.jpg: JPEG and WebP hold only pictures");
+  expect_failure("render none.stl --depth a.jpg", 2, "a.jpg: JPEG and WebP hold only colour pictures");
   expect_failure("render none.stl -o a.jpeg --background transparent", 2, "a.jpeg: JPEG holds no alpha");
   expect_failure("render none.stl -o a.jpg --quality 0", 2, "--quality");
   expect_failure("render none.stl -o a.jpeg --format png", 2, "--format differs from the suffix");

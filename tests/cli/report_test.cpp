@@ -78,7 +78,7 @@ TEST_F(Report, ExplainIsACommandThatSaysTheSame) {
             "near is seen, 75 % of it, 25 % beyond the frame.\n");
   EXPECT_EQ(succeed(std::string("explain squares.obj away --json") + view).json(),
             succeed(std::string("report squares.obj --why away --json") + view).json());
-  expect_failure("explain squares.obj", 2, "no OBJECT given: its name or its number");
+  expect_failure("explain squares.obj", 2, "no OBJECT given; give the name or the number");
   expect_failure("explain", 2, "no MODEL given");
   expect_failure("explain squares.obj far near", 2, "two objects are given, 'far' and 'near'");
   expect_failure("explain squares.obj 3", 2, "squares.obj has no object 3; frontmost report lists all 3");
@@ -106,9 +106,9 @@ TEST_F(Report, ViewsOfAFileEqualThoseOneByOne) {
   expect_failure("report squares.obj --views views.json -o page.html", 2,
                  "--views excludes --output, because a page holds one view");
   write("panorama.json", R"({"views": [{"camera-model": "panorama"}]})");
-  expect_failure("report squares.obj --views panorama.json", 2, "views[0]: report needs a pinhole camera");
+  expect_failure("report squares.obj --views panorama.json", 2, "views[0]: the command report needs a pinhole camera");
   write("depth.json", R"({"views": [{"depth-func": "LESS"}]})");
-  expect_failure("report squares.obj --views depth.json", 2, "options of a depth buffer must be left out");
+  expect_failure("report squares.obj --views depth.json", 2, "leave out the options of a depth buffer");
 }
 
 TEST_F(Report, AllHidersAreThereOnRequest) {

@@ -162,7 +162,7 @@ TEST_F(VisibleCommand, WrongOptionsAreNamed) {
   expect_failure("visible plate.obj --views views.json -o views.json", 2, "the suffix names no format");
   write("panorama.json", R"({"views": [{"camera-model": "panorama"}]})");
   expect_failure("visible plate.obj --views panorama.json", 2,
-                 "panorama.json: views[0]: visible needs a pinhole camera");
+                 "panorama.json: views[0]: the command visible needs a pinhole camera");
   EXPECT_THAT(files(), ElementsAre("panorama.json", "plate.obj", "views.json"));
 }
 

@@ -115,7 +115,8 @@ TEST(DeepImages, WrongBeginningsAndChannelsAreNamed) {
     EXPECT_EQ(error_of([&] { validate(image); }, &message), ErrorCode::bad_argument);
     return message;
   };
-  const char* const order = "a deep image needs ascending beginnings, one for each pixel, and the end";
+  const char* const order =
+      "a deep image needs the index of each pixel's first sample, ascending from 0, and the number of all samples";
   DeepImage image = deep_image();
   image.first = Buffer<std::uint64_t>(2, 0);
   EXPECT_NE(complaint(image).find(order), std::string::npos) << message;

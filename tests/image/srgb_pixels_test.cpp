@@ -151,9 +151,13 @@ TEST(RefusedImages, DeepOnesToo) {
   EXPECT_EQ(complaint(deep), "image: two channels are named Z");
   deep.channels.pop_back();
   deep.first[1] = 2;
-  EXPECT_EQ(complaint(deep), "image: a deep image needs ascending beginnings, one for each pixel, and the end");
+  EXPECT_EQ(complaint(deep),
+            "image: a deep image needs the index of each pixel's first sample, ascending from 0, and the number of all "
+            "samples");
   deep.first = Buffer<std::uint64_t>();
-  EXPECT_EQ(complaint(deep), "image: a deep image needs ascending beginnings, one for each pixel, and the end");
+  EXPECT_EQ(complaint(deep),
+            "image: a deep image needs the index of each pixel's first sample, ascending from 0, and the number of all "
+            "samples");
 }
 
 TEST(RefusedComparisons, NameSizesAndChannels) {

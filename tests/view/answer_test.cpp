@@ -39,7 +39,7 @@ TEST_F(Answer, PlanesThatWereMovedAwayAreRefusedByAllReaders) {
   Visible taken = std::move(visible);
   const Visible& gone = visible;  // NOLINT(bugprone-use-after-move): what is left is the question
   ASSERT_EQ(gone.view.width, 40);
-  const char* const size = "the planes do not have the size of their view";
+  const char* const size = "the arrays do not match the size of their view";
   expect_refused(size, [&] { (void)depths_of(gone); });
   expect_refused(size, [&] { (void)depth_image(gone); });
   expect_refused(size, [&] { (void)ray_distance_image(gone); });
@@ -62,10 +62,10 @@ TEST_F(Answer, PlanesThatWereMovedAwayAreRefusedByAllReaders) {
 
 TEST_F(Answer, PlanesOfAnotherSizeAreRefused) {
   visible.view.samples = 4;
-  expect_refused("depths_of: the planes", [&] { (void)depths_of(visible); });
+  expect_refused("depths_of: the arrays", [&] { (void)depths_of(visible); });
   visible.view.samples = 1;
   visible.keys = Buffer<float>(visible.keys.size() - 1, 0.0f);
-  expect_refused("depths_of: the planes", [&] { (void)depths_of(visible); });
+  expect_refused("depths_of: the arrays", [&] { (void)depths_of(visible); });
 }
 
 TEST_F(Answer, IdsOfOtherSurfacesAreRefused) {

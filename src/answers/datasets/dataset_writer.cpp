@@ -51,20 +51,20 @@ std::string six_digits(std::size_t number) {
   return std::string(6 - std::min<std::size_t>(6, digits.size()), '0') + digits;
 }
 
-/// Whether a file name is one of these, in which 0 stands for any digit.
+/// Whether a file name matches one of the patterns, in which 0 stands for any digit.
 bool has_pattern(std::string name, const std::vector<std::string>& patterns) {
   for (char& c : name)
     if (c >= '1' && c <= '9') c = '0';
   return std::find(patterns.begin(), patterns.end(), name) != patterns.end();
 }
 
-/// A folder of files. After finish() all of them are there; without it, none.
+/// A folder whose files appear together: all of them after finish(), none without it.
 class DatasetFolder {
  public:
   /// A subfolder of numbered files; the name "" stands for the folder itself.
   struct Within {
     std::string name;
-    std::vector<std::string> patterns;  ///< of the file names; 0 stands for any digit
+    std::vector<std::string> patterns;  ///< patterns of the file names; 0 stands for any digit
   };
 
   /// \throws Error file_unwritable.
@@ -81,7 +81,7 @@ class DatasetFolder {
     write(name, [&](const std::string& path) { save_text(text, path); });
   }
 
-  /// Moves the files to their places, and removes other numbered files from the folders within. \returns the paths.
+  /// Moves the files to their places, and removes all other numbered files from the subfolders. \returns the paths.
   [[nodiscard]] std::vector<std::string> finish() {
     for (const Within& made : within_)
       if (const fs::path path = fs::path(folder_) / made.name; fs::exists(path) && !fs::is_directory(path))
@@ -104,7 +104,7 @@ class DatasetFolder {
     names_.push_back(name);
   }
 
-  /// Removes numbered files of an earlier data set, which readers would take for files of this one.
+  /// Removes numbered files of an earlier data set, because programs would take them for files of this data set.
   void remove_stale() const {
     const fs::path folder = folder_;
     std::set<fs::path> written;
@@ -144,7 +144,8 @@ class CocoFile {
  public:
   explicit CocoFile(bool with_polygons) : with_polygons_(with_polygons) {}
 
-  /// `left_out` is by instance. \throws Error bad_argument for two categories of one number.
+  /// `left_out` tells for each instance whether it gets no annotation. \throws Error bad_argument for two categories of
+  /// one number.
   void begin_view(const DatasetView& view, const std::string& picture, const std::vector<bool>& left_out) {
     const Scene& scene = view.surfaces.scene();
     for (const Category& category : scene.categories) add_category(category.number, category.name);
@@ -206,10 +207,10 @@ class CocoFile {
   }
 
   bool with_polygons_;
-  std::map<std::uint32_t, std::string> categories_;  ///< by number
-  std::map<std::string, std::uint32_t> names_;       ///< objects without a category, and their numbers
-  std::uint32_t last_ = 0;                           ///< the highest number
-  std::vector<std::uint32_t> order_;                 ///< the numbers in the order of their arrival
+  std::map<std::uint32_t, std::string> categories_;  ///< names of the categories, by number
+  std::map<std::string, std::uint32_t> names_;       ///< names of objects without a category, and their numbers
+  std::uint32_t last_ = 0;                           ///< the highest category number so far
+  std::vector<std::uint32_t> order_;                 ///< category numbers in the order in which they were added
   std::size_t image_count_ = 0, annotation_count_ = 0;
   std::string images_, annotations_;
 };
@@ -246,7 +247,7 @@ Json camera_json(const DatasetView& view, double millimetres, double depth_scale
           {"cam_t_w2c", vector_json(glm::dvec3(pose[3]) * millimetres)}};
 }
 
-/// The category's number. Objects without a category are numbered after the highest category, by mesh.
+/// The number of the object's category. Objects without a category are numbered by mesh, after the highest category.
 std::uint64_t object_number(const Scene& scene, const Instance& instance) {
   if (instance.category != no_index) return scene.categories[instance.category].number;
   std::uint64_t highest = 0;
@@ -274,8 +275,8 @@ Json pose_json(const DatasetView& view, std::uint32_t object, double millimetres
           {"obj_id", object_number(scene, instance)}};
 }
 
-/// A box as in bop_toolkit: its size is the distance from the first pixel to the last, one less than the number of
-/// pixels.
+/// A box as in bop_toolkit: its size is the distance from the first pixel to the last, which is one less than the
+/// number of pixels.
 Json bop_box(const PixelBox& box, bool is_seen) {
   return is_seen ? Json::array({box.x, box.y, box.width - 1, box.height - 1}) : Json::array({-1, -1, -1, -1});
 }
@@ -340,7 +341,7 @@ double depth_scale_of(const Image& depths, double millimetres) {
 
 void append_element(std::string& list, const Json& json) { list += (list.empty() ? "" : ", ") + json.dump(); }
 
-/// A line for each view, as bop_toolkit writes them.
+/// Appends the line of a view, as bop_toolkit writes it.
 void append_view(std::string& file, std::size_t view, const std::string& text) {
   file += (file.empty() ? "  \"" : ",\n  \"") + std::to_string(view) + "\": " + text;
 }
@@ -435,8 +436,8 @@ class MaskFolder {
   bool is_numbered_;
 };
 
-/// The objects of a scene with one of these names, or with a category of one of these names; by instance. O(instances *
-/// names). \throws Error bad_argument for a name that no object and no category has.
+/// For each instance: whether it has one of these names, or a category with one of these names. O(instances * names).
+/// \throws Error bad_argument for a name that no object and no category has.
 std::vector<bool> named_objects(const Scene& scene, const std::vector<std::string>& names) {
   std::vector<bool> named(scene.instances.size());
   for (const std::string& name : names) {

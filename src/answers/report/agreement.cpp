@@ -9,7 +9,7 @@
 //
 // All triangles must be compared. Differing samples are therefore kept in cells of 16 x 16 pixels, in which a triangle
 // finds the samples that it may cover. The two triangles of a sample come first. A triangle is skipped in a cell if it
-// misses the cell, or is everywhere in it farther than the farthest remaining claim.
+// misses the cell, or if it is farther than the farthest remaining claim everywhere in the cell.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -29,7 +29,7 @@ namespace frontmost {
 namespace {
 
 constexpr std::size_t kRowGrain = 8, kTriangleGrain = 256, kSampleGrain = 1024;
-// Side of the cells of differing samples, in pixels.
+// Side length of the cells of differing samples, in pixels.
 constexpr int kCell = 16;
 
 bool are_finite(const std::array<glm::vec3, 3>& corners) {
@@ -127,7 +127,7 @@ struct DifferingSample {
 /// For both claims of every sample: true if the scene rules the claim out. Values only change from false to true.
 using RuledOut = std::vector<std::array<std::atomic<bool>, 2>>;
 
-/// The samples that differ, by their position.
+/// The samples that differ, in cells of the screen.
 class DifferenceMap {
  public:
   DifferenceMap(const Question& question, const std::vector<DifferingSample>& samples, const RuledOut& ruled_out,
@@ -150,8 +150,8 @@ class DifferenceMap {
           farthest = std::min(farthest, samples[i].claims[k].nearness);
   }
 
-  /// Visits the samples in the cells that a triangle and its rectangle of the screen, in pixels, meet. Skips cells
-  /// where the triangle is behind all claims.
+  /// Visits the samples of each cell that a triangle and its rectangle on the screen, in pixels, both meet. Skips cells
+  /// in which the triangle is behind all claims.
   template <class Visit>
   void in_rect(const glm::dvec2& low, const glm::dvec2& high, const std::array<glm::vec3, 3>& corners,
                const Visit& visit) const {
@@ -179,9 +179,9 @@ class DifferenceMap {
   const Question& question_;
   const View& view_;
   int columns_, rows_;
-  const Buckets<std::size_t> numbers_;  ///< of samples that differ, by cell
+  const Buckets<std::size_t> numbers_;  ///< numbers of the samples that differ, by cell
   std::vector<double> farthest_;        ///< by cell: nearness of the farthest of the remaining claims
-  std::vector<SampleSquare> squares_;   ///< by cell, around the squares of all of its samples
+  std::vector<SampleSquare> squares_;   ///< by cell: a square around the squares of all of its samples
 };
 
 /// A rectangle of the screen, in pixels, around the visible part of a triangle.
@@ -201,7 +201,7 @@ ScreenRect rect_of(const std::array<glm::vec3, 3>& corners, const View& view, co
     rect.low = glm::min(rect.low, place);
     rect.high = glm::max(rect.high, place);
   };
-  const double near = -0.99 * p.clip.near;  // with a margin: keys decide at the plane itself
+  const double near = -0.99 * p.clip.near;  // with a margin, because the keys decide at the plane
   for (std::size_t i = 0; i < 3; ++i) {
     const glm::dvec3 &a = c[i], &b = c[(i + 1) % 3];
     if (p.orthographic || a.z <= near) include(a);

@@ -51,7 +51,7 @@ class Judge {
   SampleRays rays_;
 };
 
-/// Visits (index, ray) of every sample in a row of a plane.
+/// Calls visit(index, ray) for every sample in a row of a plane; ray() returns the sample's ray.
 template <class Visit>
 void for_each_sample(const View& view, const SampleRays& rays, std::size_t row, const Visit& visit) {
   const auto height = std::size_t(view.height), width = std::size_t(view.width);
@@ -76,7 +76,7 @@ glm::vec3 heat(float share) {
   return glm::mix(kStops[i], kStops[i + 1], at - float(i));
 }
 
-/// Draws ranges of primitives, with an offset for one of them.
+/// Draws all primitives into a depth buffer, those of the remedy's instance with the remedy's offset.
 Visible draw(const Surfaces& surfaces, const View& view, const DepthSetup& setup,
              const std::optional<OffsetRemedy>& remedy, const Execution& execution) {
   DepthBuffer buffer(view.width, view.height, view.samples, setup.format);
@@ -110,7 +110,7 @@ View with_clip(View view, const ClipDistances& clip) {
 /// Near and far planes as close as the faces in the picture allow.
 ClipDistances tight_planes(const Surfaces& surfaces, const View& view, const DepthSetup& setup,
                            const Execution& execution) {
-  constexpr double kAir = 1e-3;  // share of the distance, so that rounding cuts nothing off
+  constexpr double kAir = 1e-3;  // margin, as a share of the distance, so that rounding cuts nothing off
   float least = 2, greatest = 0;
   for (const ScreenFace& face : screen_faces(surfaces, view, KeyStep(setup), {}, execution))
     for (const float key : face.record.key) {
@@ -166,7 +166,8 @@ DepthFights find_depth_fights(const Surfaces& surfaces, const ExactVisible& exac
       if (seen == no_index || nearer == no_index) return;
       pair.farthest = std::max(pair.farthest, double(fights.errors[i]) * judge.distance(nearest, ray()));
     });
-  // From a map by a stable sort: pairs with equally many samples are ordered by their objects, on every machine.
+  // The map is ordered and the sort is stable, so pairs with equally many samples are ordered by their objects on every
+  // machine.
   for (const auto& [key, pair] : pairs) fights.pairs.push_back(pair);
   std::stable_sort(fights.pairs.begin(), fights.pairs.end(),
                    [](const FightingPair& a, const FightingPair& b) { return a.samples > b.samples; });

@@ -69,10 +69,10 @@ double reach_of(const DepthSetup& setup, double distance) {
   return kTimes * (setup.orthographic ? std::max(std::abs(setup.clip.near), std::abs(setup.clip.far)) : distance);
 }
 
-/// The error of a distance before it is stored. Rounded once each: a vertex's differences to the eye, its row of the
-/// transform, their products, the three sums, and its world position. At the rim of the guard band the triangle is cut,
-/// which takes two steps. Making the key takes a reciprocal and a product; in parallel projection, the difference to
-/// the far plane and a product.
+/// The error of a distance before it is stored. These numbers are rounded once each: a vertex's differences to the eye,
+/// its row of the transform, their products, the three sums, and its world position. At the rim of the guard band the
+/// triangle is cut, which rounds twice. Making the key takes a reciprocal and a product; in parallel projection, the
+/// difference to the far plane and a product.
 double rounding(const DepthSetup& setup, double distance, double reach) {
   constexpr double kUnit = 0x1p-24;
   return kUnit * (9 * reach + 2 * (setup.orthographic ? setup.clip.far - distance : distance));
@@ -85,7 +85,8 @@ double bits_of(double depth) {
   return bits;
 }
 
-/// For floats that are not reversed. The gap only shrinks as the near plane moves away from the eye.
+/// Bisects for the near plane, for floats that are not reversed. Bisection works because the gap only shrinks as the
+/// near plane moves away from the eye.
 std::optional<double> bisected_near(DepthSetup setup, double distance, double gap) {
   double low = std::log(distance) - 70, high = std::log(distance);
   for (int i = 0; i < 200; ++i) {
@@ -161,7 +162,7 @@ std::vector<double> round_distances(const ClipDistances& clip) {
   const double first = clip.near > 0 ? clip.near : (far - clip.near) * 1e-6;
   for (int exponent = int(std::floor(std::log10(first))); exponent <= 308 && distances.size() < 200; ++exponent) {
     for (const double digit : {1.0, 2.0, 5.0}) {
-      // One rounding, so that 0.2 is the usual double 0.2.
+      // Rounded only once, so that 0.2 is the usual double 0.2.
       const double distance = exponent < 0 ? digit / std::pow(10.0, -exponent) : digit * std::pow(10.0, exponent);
       if (distance > first * 1.0001 && distance < far * 0.9999) distances.push_back(distance);
     }

@@ -89,8 +89,8 @@ Fraction exact_depth(const std::array<glm::vec3, 3>& corners, const SampleRays& 
   if (depth.denominator.sign() < 0) depth = {-depth.numerator, -depth.denominator};
   // Edge-on: the ray lies in the plane or misses it. The depth of the nearest corner is used.
   if (depth.denominator.sign() == 0) depth = {Expansion(-std::numeric_limits<float>::max()), Expansion(1)};
-  // Limits the depth to the corners' range, by the same rule as the bounds above; otherwise both would disagree about
-  // slivers.
+  // Limits the depth to the corners' range, by the same rule as the bounds above; otherwise exact depths and bounds
+  // would disagree about slivers.
   Expansion nearest, farthest;
   for (std::size_t i = 0; i < 3; ++i) {
     const Expansion at = dot(exact(rays.forward()), difference(glm::dvec3(corners[i]), rays.eye()));
@@ -112,7 +112,8 @@ namespace {
 
 using namespace zbuffer_detail;
 
-/// Whether two triangles lie in exactly one common plane. False if it is open whether either has an area.
+/// Whether two triangles lie in exactly one common plane. False if doubles leave open whether each triangle has an
+/// area.
 bool share_a_plane(const std::array<glm::vec3, 3>& a, const std::array<glm::vec3, 3>& b) {
   const auto has_area = [](const std::array<glm::vec3, 3>& corners) {
     const glm::dvec3 from(corners[0]);
@@ -133,11 +134,11 @@ bool has_one_depth(const std::array<glm::vec3, 3>& corners, const SampleRays& ra
   return is_level(corners[1]) && is_level(corners[2]);
 }
 
-/// A triangle at a sample is one step of work if doubles decide. The constants are the steps of entering a triangle
-/// into a tile, of comparing two planes exactly, and of comparing two depths; a tile reports its steps in portions of
-/// kStepsAtOnce.
+/// A triangle at a sample is one step of work if doubles decide. Entering a triangle into a tile, comparing two planes
+/// exactly, and comparing two depths exactly take the following numbers of steps. A tile reports its steps in portions
+/// of kStepsAtOnce.
 constexpr std::uint64_t kStepsOfTriangle = 16, kStepsOfPlanes = 16, kStepsOfDepths = 64, kStepsAtOnce = 1 << 14;
-/// Limits of the steps: in all, and more for each sample and triangle.
+/// The limit of the steps is a constant, plus a number for each sample and one for each triangle.
 constexpr std::uint64_t kMostSteps = std::uint64_t(1) << 29, kMostStepsOfSample = 128, kMostStepsOfTriangle = 1024;
 
 /// Cached facts about a pair of triangles. In models with coplanar faces, thousands of samples need them.
@@ -147,7 +148,7 @@ struct Rival {
   std::optional<BoundedPlane> plane;
 };
 
-/// The planes being filled, and the bounds of the nearest depth so far, by sample.
+/// The answer that is being filled, and by sample the bounds of the nearest depth so far.
 struct NearestBounds {
   const Surfaces& surfaces;
   const SampleRays rays;
@@ -241,7 +242,7 @@ class NearestInTile {
   PixelRect tile_;
   WorkLimit& work_;
   std::uint64_t steps_ = 0;       ///< not yet reported
-  std::array<Rival, 16> rivals_;  // by the last bits of their ids
+  std::array<Rival, 16> rivals_;  // indexed by the last bits of the ids
 };
 
 }  // namespace

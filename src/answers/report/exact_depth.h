@@ -45,13 +45,13 @@ struct DepthBounds {
   double low, high;
 };
 
-/// A plane in doubles, with bounds of their rounding.
+/// The plane of a triangle in doubles, with bounds of their rounding errors.
 class BoundedPlane {
  public:
   BoundedPlane(const std::array<glm::vec3, 3>& corners, const SampleRays& rays);
   [[nodiscard]] DepthBounds at(const SampleRay& ray) const;
-  /// Whether the exact depth within these bounds of at() is the plane's own, not limited by a corner. False if that is
-  /// open.
+  /// Whether the exact depth within these bounds of at() is the plane's own, not limited by a corner. False if the
+  /// bounds leave that open.
   [[nodiscard]] bool is_within_corners(const DepthBounds& bounds) const {
     return bounds.low > limits_low_.high && bounds.high < limits_high_.low;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counts of a scene, mesh by mesh and object by object; and likely units of files that state none. The topology of a
+// Counts of a scene, mesh by mesh and object by object; and likely units of files that state no unit. The topology of a
 // mesh is found by sorting and joining, in parallel:
 //
 //   positions --equal--> one number for each point
@@ -38,10 +38,10 @@ constexpr std::size_t kMaxTriangles = std::size_t(1) << 29;  // leaves a free bi
 constexpr std::size_t kGrain = std::size_t(1) << 14;
 constexpr std::uint32_t kUnpaired = no_index;
 
-/// A half-edge among those with the same lower point.
+/// A half-edge, in the bucket of half-edges with the same lower point.
 struct HalfEdge {
   std::uint32_t upper;   ///< the other point
-  std::uint32_t marked;  ///< number of the half-edge; the highest bit is set where it leads to the lower point
+  std::uint32_t marked;  ///< number of the half-edge; the highest bit is set if the half-edge leads to the lower point
 
   static constexpr std::uint32_t backward = 1u << 31;
   [[nodiscard]] std::uint32_t number() const { return marked & ~backward; }
@@ -51,7 +51,7 @@ struct HalfEdge {
   [[nodiscard]] bool is_same(const HalfEdge& other) const { return upper == other.upper; }
 };
 
-/// The two greater points of a triangle, among the triangles with the same least point.
+/// The two greater points of a triangle, in the bucket of triangles with the same least point.
 struct UpperPoints {
   std::uint32_t middle, last;
 
@@ -59,8 +59,8 @@ struct UpperPoints {
   [[nodiscard]] bool is_same(const UpperPoints& other) const { return *this == other; }
 };
 
-/// Calls visit(group, sums) for each group of equal items of a bucket, from several threads, and adds all `sums` to
-/// `all`.
+/// Sorts each bucket, and calls visit(group, sums) for each group of equal items, from several threads. Adds all `sums`
+/// to `all`.
 template <class Item, class Visit>
 void for_each_group(Buckets<Item>& buckets, const Execution& execution, Oddities& all, const Visit& visit) {
   std::mutex mutex;
@@ -103,7 +103,7 @@ class MeshTopology {
     });
   }
 
-  /// Sets the counts of a report. \returns the different positions of finite triangles.
+  /// Sets the counts of a report. \returns the different positions that finite triangles use.
   [[nodiscard]] std::vector<glm::vec3> examine(MeshReport& report) {
     Oddities& odd = report.odd;
     std::uint64_t surface = 0;  // number of triangles with three different corners
@@ -177,9 +177,9 @@ class MeshTopology {
     });
   }
 
-  // The number of fans of triangles around vertices. A vertex has one fan, unless two fans touch in a point; the
-  // surface passes that point twice, and counting it once would turn it into a handle. Precondition: every half-edge
-  // has its twin.
+  // The number of fans of triangles around vertices. A vertex has one fan, unless several fans touch in it. The surface
+  // then passes the vertex several times, and counting the vertex once would turn the contact into a handle.
+  // Precondition: every half-edge has its twin.
   [[nodiscard]] std::uint64_t count_fans() const {
     std::uint64_t fans = 0;
     std::vector<bool> seen(twins_.size(), false);
@@ -257,7 +257,7 @@ MeshReport report_mesh(const Mesh& mesh, const Execution& execution, std::vector
   return report;
 }
 
-// The bounds of the points that stay finite in world space.
+// The bounds of those points that are finite in world space.
 Box bounds_of(const std::vector<glm::vec3>& points, const glm::dmat4& world_from_mesh, const Execution& execution) {
   Box bounds;
   std::mutex mutex;
@@ -277,9 +277,9 @@ struct Measures {
   double area = 0, volume = 0;
 };
 
-/// Area and volume. Triangles are summed in blocks, so that the number of threads does not change the result. The
-/// volume is that of tetrahedra with their tip in the middle of the bounds; other tips, far from the object, would
-/// cause cancellation.
+/// Area and volume of a placed mesh. Triangles are summed in blocks, so that the number of threads does not change the
+/// result. The volume is the sum of tetrahedra with their tip in the middle of the bounds; a tip far from the object
+/// would cause cancellation.
 Measures measures_of(const Mesh& mesh, const glm::dmat4& world_from_mesh, const Box& bounds,
                      const Execution& execution) {
   constexpr std::size_t block = std::size_t(1) << 14;
@@ -339,8 +339,8 @@ LightReport report_light(const Light& light) {
           light.intensity, light.range, light.inner_cone,    light.outer_cone};
 }
 
-// Objects of one mesh need its points. Meshes are examined one after the other, so only one mesh's points are in
-// memory.
+// Reports the objects of one mesh, which need its points. Meshes are examined one after the other, so only one mesh's
+// points are in memory at a time.
 void report_objects(const Scene& scene, const std::vector<std::uint32_t>& instances,
                     const std::vector<glm::vec3>& points, const Execution& execution, SceneReport& report) {
   for (const std::uint32_t i : instances) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// With o the origin of a ray along v: a triangle abc is met if the determinants (a-o, b-o, v), (b-o, c-o, v) and (c-o,
-// a-o, v) have the sign of (a-o, b-o, c-o), or, in parallel projection, of (b-a, c-a, v). The signs also imply that the
-// ray's line is met in front of the eye and not behind.
+// With o the origin of a ray along v: the ray meets a triangle abc if the determinants (a-o, b-o, v), (b-o, c-o, v) and
+// (c-o, a-o, v) have the sign of (a-o, b-o, c-o), or, in parallel projection, of (b-a, c-a, v). The signs also imply
+// that the ray's line is met in front of the eye and not behind.
 #include "report/sample_square.h"
 
 #include <algorithm>
@@ -11,10 +11,10 @@
 namespace frontmost {
 namespace {
 
-// 1/128 pixel in 1/256.
+// 1/128 pixel, in units of 1/256 pixel.
 constexpr int kMargin = 2;
-// Roundings of a float: 16 of a key (triangle_keys.h), 2 of the corners', and 2 to spare; and 6 of a corner's distance
-// from the eye, since its depth is a sum of coordinates.
+// Sums of float roundings. Key: 16 of the interpolation (triangle_keys.h), 2 of the corners' keys, and 2 to spare.
+// Distance of a corner from the eye: 6, since its depth is a sum of coordinates.
 constexpr double kKeyRounding = 20 * 0x1p-24, kDistanceRounding = 6 * 0x1p-24;
 
 }  // namespace
@@ -46,7 +46,7 @@ ViewedTriangle::ViewedTriangle(const std::array<glm::vec3, 3>& corners, const Sa
     error = std::max(error, depth.error);
     const double from_eye = glm::distance(corner, rays.eye());
     reach = std::max(reach, from_eye);
-    // Points that are nearer, or farther aside, are cut off in doubles.
+    // Points that are nearer than near, or farther aside than the guard band, are clipped in doubles.
     if (depth.value >= rays.near()) spread = std::max(spread, std::min(from_eye / depth.value, rays.widest()));
   }
   depths_near_ = {low - error, low + error};
@@ -75,15 +75,15 @@ bool ViewedTriangle::is_inside(const SampleRay& ray) const {
   return true;
 }
 
-/// Whether a plane through the eye and a side of either has the triangle and the square on its two sides. They then do
-/// not meet; two convex figures in front of the eye that do not meet always have such a plane. Some triangles that
-/// reach behind the eye and miss the square count as touching.
+/// Whether a plane separates triangle and square. Planes through the eye and a side of either are tested; two convex
+/// figures in front of the eye that do not meet always have such a plane. Some triangles that reach behind the eye and
+/// miss the square are not separated, and count as touching.
 bool ViewedTriangle::is_separated(const SampleSquare& square) const {
   for (std::size_t edge = 0; edge < 3; ++edge) {
     std::array<int, 4> sides;
     for (std::size_t i = 0; i < 4; ++i) sides[i] = edge_side(edge, square.corners[i]);
     const auto [least, most] = std::minmax_element(sides.begin(), sides.end());
-    // A triangle that is seen edge-on has nothing on either side.
+    // A triangle that is seen edge-on lies on neither side.
     if (facing_ >= 0 && *most < 0) return true;
     if (facing_ <= 0 && *least > 0) return true;
   }
@@ -101,8 +101,8 @@ bool ViewedTriangle::is_separated(const SampleSquare& square) const {
   return false;
 }
 
-/// How the part between near and far of a triangle that contains the square meets the square. Methods clip in floats,
-/// so within their rounding of a plane either answer may be right.
+/// How the part of a triangle between near and far meets the square, for a triangle that contains the square. Methods
+/// clip in floats, so either answer may be right within their rounding of a plane.
 LineMeeting ViewedTriangle::between_planes(const SampleSquare& square) const {
   const double rim = kKeyRounding;
   if (depths_near_.low > rays_->near() * (1 + rim) && depths_far_.high < rays_->far() * (1 - rim))
@@ -135,7 +135,7 @@ DepthBounds ViewedTriangle::nearness_at(const SampleRay& ray) const {
   const Bounded across = bounded_dot(normal_.value, normal_.error, ray.direction);
   const Bounded& below = rays_->is_orthographic() ? across : along;
   const Bounded& above = rays_->is_orthographic() ? along : across;
-  // The plane contains the eye, as far as doubles can tell. The test is written so that NaN passes it.
+  // Taken if the plane contains the eye, as far as doubles can tell. The test is written so that NaN passes it.
   if (!(std::abs(below.value) > 4 * below.error)) return {limits_least_.low, limits_greatest_.high};
   const double value = (rays_->is_orthographic() ? -above.value : above.value) / below.value;
   const double error = (above.error + std::abs(value) * below.error) / (std::abs(below.value) - below.error) +
@@ -155,7 +155,7 @@ NearnessRange ViewedTriangle::nearness(const SampleSquare& square) const {
   return range;
 }
 
-/// The nearness of the nearest (extreme 1) or farthest (-1) corner, limited to the planes.
+/// The nearness of the nearest (extreme 1) or farthest (-1) corner, limited to that of the near and far planes.
 Fraction ViewedTriangle::exact_limit(int extreme) const {
   Expansion depth;
   for (std::size_t i = 0; i < 3; ++i) {

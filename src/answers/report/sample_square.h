@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a triangle meets the square of +-1/128 pixel around a sample, and how near it is there. Doubles with bounds
-// decide nearly everywhere, expansions the rest.
+// How a triangle meets the square of +-1/128 pixel around a sample, and how near the triangle is there. Doubles with
+// bounds decide nearly everywhere; expansions decide the rest.
 //
 //       +-----------+            misses     no ray of the square meets the triangle
 //       |        /  |            touches    some rays do: methods that place corners slightly differently may disagree
@@ -15,7 +15,7 @@
 
 namespace frontmost {
 
-/// The square, as the rays through its corners, in order around it.
+/// The square as the rays through its corners, in order around the square.
 struct SampleSquare {
   std::array<SampleRay, 4> corners;
   SampleSquare(const SampleRays& rays, int x, int y, const glm::ivec2& offset);
@@ -37,16 +37,17 @@ class ViewedTriangle {
   ViewedTriangle(const std::array<glm::vec3, 3>& corners, const SampleRays& rays);
 
   [[nodiscard]] LineMeeting meeting(const SampleSquare& square) const;
-  /// The nearness of the triangle's plane over the square, limited to that of its corners and of the near and far
-  /// planes. Snapping moves the visible part by less than the width of the square, however thin the triangle is, so
-  /// every key of the triangle lies in this range.
+  /// The nearness of the triangle's plane over the square, limited to the nearness of the triangle's corners and of the
+  /// near and far planes. Snapping moves the visible part by less than the width of the square, however thin the
+  /// triangle is, so every key of the triangle lies in this range.
   [[nodiscard]] NearnessRange nearness(const SampleSquare& square) const;
-  /// Greatest error of a key of this triangle, in terms of nearness.
+  /// Greatest error of a key of this triangle, as a difference of nearness.
   [[nodiscard]] double resolution(double nearness) const { return relative_ * std::abs(nearness) + absolute_; }
   /// The side that is seen: -1 front (counter-clockwise), 1 back, 0 edge-on.
   [[nodiscard]] int facing() const { return facing_; }
 
-  /// Whether the least nearness of `a` exceeds the greatest of `b` by more than the resolution of either; exact.
+  /// Whether the least nearness of `a` exceeds the greatest nearness of `b` by more than the resolution of either;
+  /// exact.
   friend bool is_surely_nearer(const ViewedTriangle& a, const ViewedTriangle& b, const SampleSquare& square);
 
  private:
@@ -66,8 +67,8 @@ class ViewedTriangle {
   const SampleRays* rays_;
   BoundedNormal normal_;
   DepthBounds depths_near_, depths_far_;  // depths of the nearest and of the farthest corner, before the planes cut
-  DepthBounds limits_least_, limits_greatest_;  // nearness of these corners, between the planes
-  double relative_ = 0, absolute_ = 0;          // resolution()
+  DepthBounds limits_least_, limits_greatest_;  // nearness of these corners, limited to that of the planes
+  double relative_ = 0, absolute_ = 0;          // terms of resolution()
   int facing_;
 };
 

@@ -36,7 +36,7 @@ Error Error::within(const std::string& file, const std::string& place) const {
 
 namespace {
 
-/// Bytes of the character at the beginning of `text`; 0 if there is no valid character.
+/// Number of bytes of the character at the beginning of `text`; 0 if there is no valid character.
 std::size_t character_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   if (byte(0) < 0x80) return 1;
@@ -50,8 +50,8 @@ std::size_t character_length(std::string_view text) {
   return is_none ? 0 : length;
 }
 
-/// Whether a whole character is a control character: one below the blank, the one behind the tilde, U+0080 to U+009F,
-/// or U+FFFE and U+FFFF, which are no characters and which XML does not allow.
+/// Whether a character is a control character: U+0000 to U+001F, U+007F to U+009F, or U+FFFE and U+FFFF, which are no
+/// characters and which XML does not allow.
 bool is_control(std::string_view character) {
   const auto first = static_cast<unsigned char>(character[0]);
   if (character == "\xEF\xBF\xBE" || character == "\xEF\xBF\xBF") return true;

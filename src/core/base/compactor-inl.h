@@ -39,8 +39,8 @@ constexpr std::array<std::array<std::uint8_t, 8>, 256> PackedLanes() {
 alignas(64) constexpr auto kPackedLanes = PackedLanes();
 #endif
 
-/// Selects once, then stores several vectors. A store writes a whole vector: lanes behind the packed ones must be
-/// overwritten or ignored.
+/// Packs the lanes that one mask selects, in any number of vectors. A store writes a whole vector: lanes behind the
+/// packed ones must be overwritten or ignored.
 template <class D>
 class Compactor {
  public:

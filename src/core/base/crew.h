@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads that stay for the next loop. Making threads for every loop takes as long as many a loop, and WebAssembly
-// frees ended threads only when the page comes to rest.
+// Threads that are kept from loop to loop. Making threads for a loop takes as long as many loops do, and WebAssembly
+// frees ended threads only when the page is idle.
 //
 //   run(2, work)     work here   ------------------------------+ wait until nobody is inside
 //   a thread         looks out -- work ----------------+ looks out ... sleeps
@@ -8,7 +8,7 @@
 //
 // Nested loops and loops of several callers share the threads: every caller does its own work, and free threads come to
 // help. A loop waits only for work that has begun. A free thread looks out for the next loop for a while before it
-// sleeps, because waking a thread takes about as long as many a loop.
+// sleeps, because waking a thread takes about as long as many loops do.
 #pragma once
 
 #include <pthread.h>
@@ -26,7 +26,7 @@
 
 namespace frontmost {
 
-/// Never destroyed, as threads wait in it until the process ends.
+/// A Crew is never destroyed, because its threads wait in it until the process ends.
 class Crew {
  public:
   /// Starts a thread that nobody waits for. \throws std::exception if the system gives none.
@@ -75,7 +75,7 @@ class Crew {
     std::atomic<int> inside = 0;  ///< threads at work
   };
 
-  /// Waits up to 50 us without sleeping until `is_true()`. \returns whether it is.
+  /// Waits up to 50 us without sleeping until `is_true()` holds. \returns whether it holds.
   template <class Condition>
   static bool spin_until(const Condition& is_true) {
     constexpr std::chrono::microseconds a_while(50);
@@ -88,7 +88,7 @@ class Crew {
     return false;
   }
 
-  /// Makes as many threads as the largest loop so far wanted.
+  /// Starts threads until there are as many as the largest loop so far asked for.
   void hire(int helpers) {
     if (size_ >= helpers) return;
     if (pause_ > 0) return void(--pause_);
@@ -130,7 +130,7 @@ class Crew {
   std::atomic<int> places_{0};  ///< helpers that all jobs still want
   int asleep_ = 0;
   int size_ = 0;
-  int pause_ = 0;  ///< loops that lack threads, until more are asked for after a refusal
+  int pause_ = 0;  ///< number of loops before the system is asked for threads again, after a refusal
 };
 
 }  // namespace frontmost

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Decimal text of doubles, as std::to_chars() writes it, even if the standard library lacks std::to_chars() for doubles
-// (WebAssembly). C's functions write a point there whatever the locale, since there is only one.
+// (WebAssembly). There, C's functions always write a decimal point, because there is only one locale.
 #pragma once
 
 #include <charconv>

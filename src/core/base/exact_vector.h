@@ -95,7 +95,7 @@ class Expansion {
 
   /// -1, 0 or 1: the sign of the largest term.
   [[nodiscard]] int sign() const { return terms_.empty() ? 0 : terms_.back() > 0 ? 1 : -1; }
-  /// The largest term: the value to within two roundings of sums and products.
+  /// The largest term, which is the value of a sum or product to within two roundings.
   [[nodiscard]] double rounded() const { return terms_.empty() ? 0 : terms_.back(); }
 
   friend Expansion operator+(Expansion a, const Expansion& b) {
@@ -122,7 +122,7 @@ class Expansion {
   }
 
  private:
-  /// Grow-Expansion, without zeros.
+  /// Adds a double without rounding (Shewchuk's Grow-Expansion), and drops terms that are zero.
   void add(double value) {
     std::size_t kept = 0;
     for (const double term : terms_) {
@@ -161,7 +161,7 @@ class Expansion {
   detail::TermList terms_;
 };
 
-/// A bound of a dozen roundings, relative to the sum of the terms' absolute values.
+/// Bounds the error of a dozen roundings, relative to the sum of the terms' absolute values.
 inline constexpr double kRounding = 32.0 / 9007199254740992.0;
 
 using ExactVector = std::array<Expansion, 3>;
@@ -185,13 +185,15 @@ struct Bounded {
   double value, error;
 };
 
-/// n.v for a normal with errors; v is exact but for a rounding of each component.
+/// The product n.v with a bound of its error, for a normal with errors. v is exact except for one rounding of each
+/// component.
 [[nodiscard]] inline Bounded bounded_dot(const glm::dvec3& n, const glm::dvec3& n_error, const glm::dvec3& v) {
   const glm::dvec3 a = glm::abs(v);
   return {glm::dot(n, v), glm::dot(n_error, a) + kRounding * glm::dot(glm::abs(n), a)};
 }
 
-/// a x b of vectors that are exact but for a rounding of each component, with an error bound of each component.
+/// The product a x b with an error bound for each component. a and b are exact except for one rounding of each
+/// component.
 struct BoundedNormal {
   glm::dvec3 value, error;
 
@@ -202,7 +204,7 @@ struct BoundedNormal {
   }
 };
 
-/// The vector from one point to another; neither point is rounded.
+/// The vector from one point to another. It is kept as its two points, so it is not rounded.
 struct Leg {
   glm::dvec3 to, from{0};
 };
@@ -217,7 +219,7 @@ struct Leg {
 
 namespace detail {
 
-/// high + low, twice as long as a double.
+/// The sum high + low, which has twice the bits of a double.
 struct DoubleDouble {
   double high, low;
 };
@@ -235,7 +237,7 @@ struct DoubleDouble {
   return {high, ((a.high - (high - part)) + (b.high - part)) + (a.low + b.low)};
 }
 
-/// The sign of the determinant, or 0 if twice the length of doubles leaves it open.
+/// The sign of the determinant, or 0 if double-doubles leave the sign open.
 [[nodiscard]] inline int sign_by_double_doubles(const Leg& a, const Leg& b, const Leg& c) {
   const Leg* legs[3] = {&a, &b, &c};
   DoubleDouble v[3][3];
@@ -254,8 +256,7 @@ struct DoubleDouble {
   return value > error ? 1 : value < -error ? -1 : 0;
 }
 
-/// Whether two vectors surely lie along one line. Decides only if their components are doubles without rounding;
-/// otherwise false.
+/// Whether two vectors surely lie along one line. False if a component of theirs is not exact as a double.
 [[nodiscard]] inline bool are_parallel(const Leg& a, const Leg& b) {
   double v[2][3];
   for (int axis = 0; axis < 3; ++axis) {

@@ -44,8 +44,8 @@ std::int64_t machine_targets() {
                     __builtin_cpu_supports("aes");
   const bool avx2 = sse4 && f16c && __builtin_cpu_supports("avx") && __builtin_cpu_supports("avx2") &&
                     __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
-  // Each target includes the one before it, as the compiler's own targets do: no machine has the wider without the
-  // narrower.
+  // Each target includes the features of the target before it, as the compiler's own targets do, because no machine has
+  // the wider instruction set without the narrower.
   const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
                       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
   return (sse4 ? HWY_SSE4 : 0) | (avx2 ? HWY_AVX2 : 0) | (avx512 ? HWY_AVX3 : 0);

@@ -34,7 +34,7 @@ template <class Function, std::size_t size>
   static_assert(size == HWY_MAX_DYNAMIC_TARGETS + 1);
   const std::int64_t wanted = HWY_CHOSEN_TARGET_SHIFT(highway_targets(isa)) | HWY_CHOSEN_TARGET_MASK_SCALAR;
   const auto compiled = static_cast<std::uint64_t>(wanted & HWY_CHOSEN_TARGET_MASK_TARGETS);
-  return table[hwy::Num0BitsBelowLS1Bit_Nonzero64(compiled) - 1];  // Highway's bit 0 is its own additional entry
+  return table[hwy::Num0BitsBelowLS1Bit_Nonzero64(compiled) - 1];  // bit 0 stands for an entry of Highway's own
 }
 
 }  // namespace frontmost

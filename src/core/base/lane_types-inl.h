@@ -33,7 +33,7 @@ using VU = hn::Vec<DU>;
 using MF = hn::Mask<DF>;
 using MI = hn::Mask<DI>;
 
-/// A compile-time constant, for arrays that hold a vector.
+/// The greatest number of lanes, as a compile-time constant: for arrays that hold a vector.
 constexpr std::size_t kMaxLanes = hn::MaxLanes(DF());
 
 /// A vector with `value` in every lane.

@@ -23,8 +23,8 @@ HWY_BEFORE_NAMESPACE();
 namespace frontmost::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Lane i in bit i. The bytes are read in the size in which they are stored: a wider read would wait for the store to
-/// reach the cache.
+/// \returns a mask as bits: lane i is bit i. The bytes are read in the size in which they are stored, because a wider
+/// read would wait until the store has reached the cache.
 template <class D>
 HWY_INLINE std::uint64_t BitsOf(D d, hn::Mask<D> mask) {
   using Bits = std::conditional_t<(hn::MaxLanes(D()) > 8), std::uint16_t, std::uint8_t>;
@@ -36,7 +36,8 @@ HWY_INLINE std::uint64_t BitsOf(D d, hn::Mask<D> mask) {
   return bits & ((std::uint64_t(1) << hn::Lanes(d)) - 1);
 }
 
-/// `first` and up. Highway's own function writes lanes to memory one by one unless `first` is a compile-time constant.
+/// \returns a vector of `first`, first + 1, first + 2 and so on. Highway's own function writes lanes to memory one by
+/// one unless `first` is a compile-time constant.
 template <class D>
 HWY_INLINE hn::Vec<D> CountFrom(D d, hn::TFromD<D> first) {
   return hn::Add(hn::Iota(d, hn::TFromD<D>(0)), hn::Set(d, first));

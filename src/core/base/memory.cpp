@@ -23,12 +23,12 @@ namespace {
 constexpr std::size_t kAlignment = 64;
 constexpr std::size_t kLargePage = std::size_t(2) << 20;
 constexpr std::size_t kWorthLargePages = kLargePage;
-/// glibc keeps a block for the next call only if it has less than 32 MiB.
+/// glibc keeps a freed block for the next call only if the block has less than 32 MiB.
 constexpr std::size_t kMostArena = std::size_t(28) << 20;
 
 constexpr std::size_t round_up(std::size_t bytes, std::size_t unit) { return (bytes + unit - 1) / unit * unit; }
 
-/// The whole small pages of a range.
+/// The small pages that lie wholly in a range.
 class Pages {
  public:
   Pages(void* start, std::size_t bytes) {
@@ -76,11 +76,11 @@ namespace detail {
 /// Header before the contents of a Buffer.
 struct alignas(kAlignment) Block {
   Slab* slab = nullptr;     ///< null: the block has memory of its own
-  Block* before = nullptr;  ///< the block before it in the slab
+  Block* before = nullptr;  ///< the previous block of the slab
   bool is_dropped = false;
 };
 
-/// A stack of blocks that follow this header.
+/// The header of a slab; a stack of blocks follows it in memory.
 struct alignas(kAlignment) Slab {
   Slab(void* whole, std::size_t room) : memory(whole), next(reinterpret_cast<char*>(this + 1)), end(next + room) {}
 
@@ -92,7 +92,7 @@ struct alignas(kAlignment) Slab {
     ++users;
     return last;
   }
-  /// Drops `block`, or the arena if it is null. \returns whether nothing uses the slab any more.
+  /// Drops `block`, or the arena if `block` is null. \returns whether nothing uses the slab any more.
   [[nodiscard]] bool drop(Block* block) noexcept {
     const std::lock_guard lock(mutex);
     if (block) block->is_dropped = true;
@@ -106,7 +106,7 @@ struct alignas(kAlignment) Slab {
   std::mutex mutex;
   char *next, *end;
   Block* last = nullptr;
-  std::size_t users = 1;  ///< the arena and the blocks
+  std::size_t users = 1;  ///< number of users: the arena and the blocks
 };
 
 namespace {
@@ -145,8 +145,9 @@ void drop(Slab* slab, Block* block) noexcept {
   std::free(memory);
 }
 
-/// Uses malloc() instead of aligned_alloc(): glibc keeps a freed block for the next one only up to the last block's
-/// size without the padding of its alignment.
+/// Uses malloc() instead of aligned_alloc(). glibc serves a request from kept memory only up to the size of the last
+/// freed block, not counting its padding for alignment. The next aligned request, whose padding counts, would be too
+/// large.
 Slab* make_slab(std::size_t room) {
   const std::size_t size = sizeof(Slab) + room, alignment = size < kWorthLargePages ? kAlignment : kLargePage;
   void* const memory = std::malloc(size + alignment);

@@ -28,7 +28,7 @@ void want_large_pages(void* start, std::size_t bytes);
 /// contents. Does nothing for ranges of a few pages, or if the system lacks the means.
 void populate_pages(void* start, std::size_t bytes, const Execution& execution);
 
-/// values.reserve(count) in large pages that are already populated.
+/// Does values.reserve(count), in large pages that are populated at once.
 template <class T>
 void reserve_large(std::vector<T>& values, std::size_t count, const Execution& execution) {
   if (count <= values.capacity()) return;
@@ -44,14 +44,13 @@ struct Slab;
 }
 
 /// While an Arena lives, the Buffers of its thread lie side by side in large pages, as long as there is room. Without
-/// it, the first touch of thousands of small pages takes a third of draw_lines() in a new process. Buffers may outlive
-/// the Arena, and any thread may drop them in any order; their room is free again once later Buffers are gone, too.
-/// Arenas must be destroyed in the reverse order of their making, on the same thread.
+/// an Arena, the first touch of thousands of small pages takes a third of draw_lines() in a new process. Buffers may
+/// outlive the Arena, and any thread may drop them in any order; their room is free again once later Buffers are gone,
+/// too. Arenas must be destroyed in the reverse order of their making, on the same thread.
 class Arena {
  public:
   /// False under AddressSanitizer, which finds reads beyond a Buffer's end only if nothing lies beside the Buffer.
-  /// False in WebAssembly, which has no pages to touch, and in which code for threads runs in modules without
-  /// thread-local memory.
+  /// False in WebAssembly, which has no pages to touch; besides, some of its modules have no thread-local memory.
   static constexpr bool has_room =
 #if defined(__SANITIZE_ADDRESS__) || defined(__wasm__)
       false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Output files that are complete or absent: written beside their place without a name, and named when complete.
 //
-// Several files cannot be replaced at once. StagedFolder comes as near to it as a file system allows: all files are
+// Several files cannot be replaced at once. StagedFolder comes as near to that as a file system allows: all files are
 // first written beside their places, where a full disk is found out, and are then only renamed.
 #include "base/output_file.h"
 
@@ -25,14 +25,14 @@ namespace fs = std::filesystem;
 
 constexpr mode_t new_file_mode = 0666;  // less the umask
 
-/// The end of a chain of symbolic links, whether something is there or not.
+/// The path at the end of a chain of symbolic links, whether or not a file is there.
 fs::path follow_links(fs::path path) {
-  constexpr int longest_chain = 40;  // as Linux counts
+  constexpr int longest_chain = 40;  // the limit of Linux
   std::error_code ignored;
   for (int i = 0; i < longest_chain && fs::is_symlink(fs::symlink_status(path, ignored)); ++i) {
     const fs::path next = fs::read_symlink(path, ignored);
     if (next.empty()) break;
-    path = path.parent_path() / next;  // an absolute `next` replaces all
+    path = path.parent_path() / next;  // an absolute `next` replaces the whole path
   }
   return path;
 }
@@ -80,7 +80,7 @@ OutputFile::OutputFile(const std::string& path, Staging staging)
     return;
   }
   if (exists) {
-    // Renaming needs no permission for the replaced file; a file without write permission is respected all the same.
+    // Renaming would need no permission for the replaced file, but a file without write permission is not replaced.
     if (::access(target_.c_str(), W_OK) != 0) fail("cannot write");
     mode_ = status.st_mode & 0777;
   }
@@ -149,7 +149,8 @@ void OutputFile::write(std::span<const std::byte> bytes) {
 
 void OutputFile::commit() {
   if (kind_ == Kind::standard_output) return;
-  // Permissions are set before the file has its name, so nobody can open it with others than the old file had.
+  // Permissions are set before the file has its name, so nobody can open the file with more permissions than the old
+  // file gave.
   if (mode_ && kind_ != Kind::direct && ::fchmod(descriptor_, *mode_) != 0) fail("cannot set permissions");
   if (kind_ == Kind::unnamed) give_name();
   close();
@@ -158,7 +159,8 @@ void OutputFile::commit() {
   temporary_.clear();
 }
 
-/// Links the nameless file to its place, or, as links never replace a file, to a name from which it can be renamed.
+/// Links the nameless file to its place. If a file is there, links the new file to a name from which it can be renamed,
+/// because links never replace a file.
 void OutputFile::give_name() {
 #ifdef O_TMPFILE
   const std::string source = link_of(descriptor_);
@@ -203,7 +205,7 @@ MadeFolder::~MadeFolder() {
 StagedFolder::StagedFolder(const std::string& folder) : folder_(folder) {
   std::string name = (folder_ / ".frontmost-XXXXXX").string();
   if (!::mkdtemp(name.data())) {
-    const int code = errno;  // read before strings are made, which may change it
+    const int code = errno;  // read first, because making strings may change it
     throw Error(ErrorCode::file_unwritable, folder, "", "cannot write: " + std::generic_category().message(code));
   }
   staged_ = name;

@@ -46,7 +46,7 @@ class OutputFile {
 
   std::string name_;
   std::filesystem::path target_;
-  std::filesystem::path temporary_;  ///< exists unless this is empty
+  std::filesystem::path temporary_;  ///< path of the temporary file; empty if there is none
   std::optional<unsigned> mode_;     ///< permissions of the file that is replaced
   Kind kind_ = Kind::direct;
   int descriptor_ = -1;

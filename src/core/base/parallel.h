@@ -45,7 +45,7 @@ void parallel_for(const Execution& execution, std::size_t count, std::size_t gra
 /// The number of threads that parallel_for would use. \throws Error bad_argument outside 0 to 1024.
 [[nodiscard]] int thread_count(const Execution& execution);
 
-/// \throws Error cancelled if the watch says so.
+/// \throws Error cancelled if Watch::cancelled returns true.
 void check_cancelled(const Execution& execution);
 /// Reports to the watch, if there is one.
 void report_progress(const Execution& execution, std::string_view stage, double fraction);

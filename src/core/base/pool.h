@@ -31,7 +31,7 @@ class Pool {
     std::unique_ptr<T> thing_;
   };
 
-  /// The object that was returned last, or the result of `make()`, a std::unique_ptr<T>.
+  /// Lends the object that was returned last, or, if none is free, the result of `make()`, a std::unique_ptr<T>.
   template <class Make>
   [[nodiscard]] Lease borrow(const Make& make) {
     {

@@ -23,7 +23,7 @@ constexpr double power_12_5(double value) {
   const double square = value * value;
   const double fourth = square * square;
   const double twelfth = fourth * fourth * fourth;
-  double root = square;  // from above: the iteration falls to the fifth root
+  double root = square;  // above the fifth root, to which the iteration falls
   for (int i = 0; i < 16; ++i) {
     const double root2 = root * root;
     root = (4 * root + twelfth / (root2 * root2)) / 5;
@@ -56,7 +56,7 @@ constexpr std::uint32_t float_bits_from(double value) {
   return (exponent << 23) + whole + (double(whole) < mantissa ? 1 : 0);  // a carry correctly moves on into the exponent
 }
 
-/// The first float of each byte from 1 on.
+/// By byte, from 1 on: the least float that becomes this byte.
 constexpr std::array<std::uint32_t, 255> thresholds() {
   std::array<std::uint32_t, 255> result{};
   for (int byte = 1; byte < 256; ++byte)
@@ -96,7 +96,8 @@ constexpr double kLinearEnd = 0.0031308;  ///< end of the linear segment near ze
 
 double curved(double linear) { return 1.055 * power_5_12(linear) - 0.055; }
 
-/// 65535 times the curved segment, as parabolas through both ends and the middle of 65536 neighbouring floats each.
+/// 65535 times the curved segment. Each parabola stands for 65536 neighbouring floats, and goes through both ends and
+/// the middle.
 class Parabolas {
  public:
   Parabolas() {
@@ -107,7 +108,7 @@ class Parabolas {
       pieces_[i] = {low, 4 * middle - 3 * low - high, 2 * (low + high) - 4 * middle};
     }
   }
-  /// Wrong by at most 1e-4.
+  /// \returns the value, with an error of at most 1e-4.
   [[nodiscard]] double operator()(float linear) const {
     std::uint32_t bits;
     std::memcpy(&bits, &linear, sizeof bits);
@@ -146,7 +147,7 @@ std::uint16_t srgb16_of_linear(float linear) {
     // Made at the first call, as most programs write 8 bits.
     static const Parabolas parabolas;
     const double near = parabolas(linear) + 0.5, whole = double(std::uint32_t(near)), fraction = near - whole;
-    // The answer is certain beyond the parabola's error from the next step: 499 times in 500.
+    // The answer is certain if the next step is farther away than the parabola's error: 499 times in 500.
     constexpr double doubt = 1e-3;
     if (fraction > doubt && fraction < 1 - doubt) return std::uint16_t(whole);
   }

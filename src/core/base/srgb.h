@@ -15,14 +15,14 @@ namespace frontmost {
 
 namespace detail {
 
-inline constexpr float least_srgb8 = 1.0f / 8192;  ///< 2^-13, which still rounds to 0
+inline constexpr float least_srgb8 = 1.0f / 8192;  ///< 2^-13, a value that still becomes byte 0
 inline constexpr std::uint32_t least_srgb8_bits = 0x39000000u;
 inline constexpr std::uint32_t one_bits = 0x3F800000u;
 inline constexpr std::size_t srgb8_bucket_count = ((one_bits - least_srgb8_bits) >> 16) + 1;
 
 /// Buckets of 65536 neighbouring floats are so narrow that none holds more than one of the 255 thresholds between the
-/// bytes. The high half of an entry is the bucket's first byte. From the threshold on, its low half plus the low bits
-/// of a float carry into the high half: lookup, comparison and step are one addition.
+/// bytes. The high half of an entry is the bucket's first byte. From the threshold on, adding the low bits of a float
+/// to the entry's low half carries into the high half, so lookup, comparison and step are one addition.
 extern const std::array<std::uint32_t, srgb8_bucket_count> srgb8_buckets;
 extern const std::array<float, 256> srgb8_linears;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Operations that Highway 1.0.3 lacks on WebAssembly: arithmetic of doubles, and masks and tables without a detour
-// through memory, with which a whole frame takes a quarter of the time.
+// Operations that Highway 1.0.3 lacks on WebAssembly: arithmetic of doubles, and masks and tables that do not go
+// through memory. They reduce the time of a whole frame to a quarter.
 //
 // These are overloads in Highway's own namespace, so that kernels are written once for every target. The order of
 // arguments of minimum and maximum is that of Highway's floats: of a NaN and a number the result is the second

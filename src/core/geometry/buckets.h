@@ -24,7 +24,7 @@ class Buckets {
   Buckets() = default;
   /// Calls `list(source, add)` twice for each of `sources`; it calls add(bucket, item) for each item of the source,
   /// both times the same. O(sources + items + buckets * threads), in parallel.
-  /// \throws Error limit_exceeded for 2^32 items and more; no bucket may have as many of one band.
+  /// \throws Error limit_exceeded for 2^32 items and more. Precondition: no bucket gets 2^32 items from one band.
   template <class List>
   Buckets(std::size_t buckets, std::size_t sources, const List& list, const Execution& execution)
       : first_(buckets + 1) {
@@ -75,7 +75,7 @@ class Buckets {
     return std::min<std::size_t>(std::size_t(thread_count(execution)), 8);
   }
 
-  Buffer<std::uint32_t> first_;  ///< by bucket, and the number of items
+  Buffer<std::uint32_t> first_;  ///< index of each bucket's first item; then the number of all items
   Buffer<Item> items_;
 };
 

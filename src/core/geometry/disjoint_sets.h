@@ -20,7 +20,7 @@ class DisjointSets {
     for (std::size_t i = 0; i < count; ++i) parents_[i].store(std::uint32_t(i), std::memory_order_relaxed);
   }
 
-  /// \returns whether the two were in different sets.
+  /// Joins the sets of two numbers. \returns whether they were in different sets.
   bool join(std::uint32_t a, std::uint32_t b) {
     for (;;) {
       a = leader_of(a), b = leader_of(b);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sides are put into buckets by their lower vertex. In a bucket, sides with the same upper vertex are the same edge.
-// Most vertices have few triangles, so that all pairs are asked; the sides of other vertices are sorted.
+// Sides are put into buckets by their lower vertex. In a bucket, sides with the same upper vertex belong to the same
+// edge. Most vertices have few triangles, so all pairs of their sides are compared. The sides of other vertices are
+// sorted.
 #include "geometry/edge_neighbours.h"
 
 #include <algorithm>
@@ -13,10 +14,10 @@ namespace {
 
 constexpr std::size_t kFewSides = 8, kVerticesAtOnce = 4096;
 
-/// A side among those with the same lower vertex.
+/// A side of a triangle, in the bucket of its lower vertex.
 struct EdgeSide {
   std::uint32_t upper;   ///< the other vertex
-  std::uint32_t number;  ///< 3 * triangle + side; the highest bit is set where it leads to the lower vertex
+  std::uint32_t number;  ///< 3 * triangle + side; the highest bit is set if the side leads to the lower vertex
 
   static constexpr std::uint32_t downwards = 1u << 31;
   [[nodiscard]] std::uint32_t side() const { return number & ~downwards; }
@@ -28,7 +29,7 @@ void join(const EdgeSide& a, const EdgeSide& b, Buffer<std::uint32_t>& beyond) {
   beyond[b.side()] = a.side() / 3 << 1 | is_wound_alike;
 }
 
-/// Does what join_pairs() does, by comparing all pairs.
+/// Like join_pairs(), but compares all pairs.
 void join_few(std::span<const EdgeSide> sides, Buffer<std::uint32_t>& beyond) {
   for (std::size_t i = 0; i < sides.size(); ++i) {
     std::size_t found = 0, partner = i;
@@ -41,7 +42,7 @@ void join_few(std::span<const EdgeSide> sides, Buffer<std::uint32_t>& beyond) {
   }
 }
 
-/// Joins the sides of one lower vertex that exactly two triangles have.
+/// Joins the two triangles at each edge that exactly two triangles share, for the edges of one lower vertex.
 void join_pairs(std::span<EdgeSide> sides, Buffer<std::uint32_t>& beyond) {
   if (sides.size() <= kFewSides) return join_few(sides, beyond);
   std::sort(sides.begin(), sides.end(), [](const EdgeSide& a, const EdgeSide& b) {

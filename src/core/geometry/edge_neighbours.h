@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The triangles that share the edges of others.
+// The triangles beyond the edges of each triangle.
 //
 //      c-------d         Edge b-c belongs to two triangles, a b c and d c b: each is the neighbour of the other there.
 //     / \     /          They are wound alike, because they run along the edge in opposite directions. Edge a-b belongs
@@ -22,27 +22,28 @@ class EdgeNeighbours {
 
   EdgeNeighbours() = default;
   /// `triangles` are welded: vertices at one place have one number, below vertex_count. A triangle that has a vertex
-  /// twice neither has neighbours nor is one. O(triangles * log triangles at a vertex), in parallel.
+  /// twice neither has neighbours nor is a neighbour. O(triangles * log triangles at a vertex), in parallel.
   /// \throws Error limit_exceeded for more than most_triangles.
   EdgeNeighbours(std::span<const glm::uvec3> triangles, std::size_t vertex_count, const Execution& execution);
 
-  /// The only other triangle with this side; no_index where there is none, or several.
+  /// The only other triangle that has this side; no_index if there is none, or several.
   [[nodiscard]] std::uint32_t beyond(std::size_t triangle, std::size_t side) const {
     const std::uint32_t found = beyond_[3 * triangle + side];
     return found == no_index ? no_index : found >> 1;
   }
-  /// Whether that triangle is wound alike: it runs along the side in the other direction. Precondition: there is one.
+  /// Whether the triangle beyond the side is wound alike, which means that it runs along the side in the other
+  /// direction. Precondition: beyond() is not no_index.
   [[nodiscard]] bool is_wound_alike(std::size_t triangle, std::size_t side) const {
     return (beyond_[3 * triangle + side] & 1) != 0;
   }
-  /// beyond() where that triangle is wound alike; otherwise no_index.
+  /// beyond() if the triangle there is wound alike, otherwise no_index.
   [[nodiscard]] std::uint32_t across(std::size_t triangle, std::size_t side) const {
     const std::uint32_t found = beyond_[3 * triangle + side];
     return found != no_index && (found & 1) != 0 ? found >> 1 : no_index;
   }
 
  private:
-  Buffer<std::uint32_t> beyond_;  ///< by triangle and side: number * 2 + whether it is wound alike
+  Buffer<std::uint32_t> beyond_;  ///< by triangle and side: neighbour * 2 + whether it is wound alike
 };
 
 }  // namespace frontmost

@@ -18,7 +18,7 @@ namespace frontmost {
 namespace {
 
 constexpr std::size_t kAtOnce = 8192;
-/// Slots of a search; among keys without a pattern a hundred are rare.
+/// The most slots that a search examines. Keys without a pattern rarely need a hundred.
 constexpr std::size_t kMostProbes = 4096;
 
 class PlaceTable {
@@ -26,7 +26,7 @@ class PlaceTable {
   explicit PlaceTable(std::span<const glm::vec3> positions)
       : positions_(positions), slots_(std::bit_ceil(2 * positions.size() + 2)) {}
 
-  /// \returns the slot of the vertex's place; no_index after too long a search. For many threads.
+  /// \returns the slot of the vertex's place; no_index if the search takes too long. Many threads may call it at once.
   std::uint32_t enter(std::uint32_t vertex) {
     const glm::vec3& p = positions_[vertex];
     const std::size_t mask = slots_.size() - 1;

@@ -14,7 +14,7 @@ namespace frontmost {
 [[nodiscard]] Buffer<std::uint32_t> first_at_place(std::span<const glm::vec3> positions, const Execution& execution);
 
 namespace detail {
-/// Computes first_at_place() by sorting, whose time nobody's choice of positions makes quadratic.
+/// Computes first_at_place() by sorting. No choice of positions makes sorting take quadratic time.
 [[nodiscard]] Buffer<std::uint32_t> first_at_place_by_sorting(std::span<const glm::vec3> positions);
 }  // namespace detail
 

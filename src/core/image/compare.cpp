@@ -17,7 +17,8 @@ std::string names_of(const Image& image) {
   return list;
 }
 
-/// Equal values, or two NaNs, differ by 0: the difference of two infinities would be NaN.
+/// The difference of two values; 0 for equal values and for two NaNs. Equal infinities are tested first, because their
+/// difference would be NaN.
 double difference(float a, float b) {
   if (a == b || (a != a && b != b)) return 0;
   const double result = std::fabs(double(a) - double(b));

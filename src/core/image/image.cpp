@@ -31,7 +31,7 @@ class WordHash {
     add(bits);
   }
   [[nodiscard]] std::uint64_t value() const {
-    // The low bits of a word reach only the high bits of the product, so these are folded back.
+    // The low bits of a word reach only the high bits of the product, so the high bits are folded back.
     return value_ ^ (value_ >> 32);
   }
 
@@ -83,7 +83,7 @@ void validate(const Image& image) {
   const std::size_t count = std::size_t(image.width) * std::size_t(image.height);
   for (const Channel& channel : image.channels) {
     if (value_count(channel) != count) fail("channel " + channel.name + " does not have width x height values");
-    // A file stores its channels by name, and find() would never reach the second.
+    // A file stores its channels by name, and find() would never return the second channel of a name.
     if (image.find(channel.name) != &channel) fail("two channels are named " + channel.name);
   }
 }
@@ -94,7 +94,7 @@ void validate(const DeepImage& image) {
   const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
   if (image.first.size() != pixels + 1 || image.first[0] != 0 ||
       !std::is_sorted(image.first.begin(), image.first.end()))
-    fail("a deep image needs ascending beginnings, one for each pixel, and the end");
+    fail("a deep image needs the index of each pixel's first sample, ascending from 0, and the number of all samples");
   std::set<std::string_view> names;
   for (const Channel& channel : image.channels) {
     if (value_count(channel) != image.first[pixels])
@@ -130,7 +130,8 @@ Image one_channel(const Visible& visible, Channel channel) {
   return image;
 }
 
-/// A map of `depth_at(x, y, planar depth)` for every pixel that sees something.
+/// A map with the value depth_at(x, y, planar depth) in every pixel that sees something, and `background` in all
+/// others.
 template <class DepthAt>
 Image map_of_depths(const Visible& visible, const char* name, float background, DepthAt&& depth_at) {
   check_planes(visible, "depth image");
@@ -144,7 +145,7 @@ Image map_of_depths(const Visible& visible, const char* name, float background, 
   return one_channel(visible, {name, std::move(values)});
 }
 
-/// Distance along the ray for a planar distance of 1, through the first sample of each pixel.
+/// For the ray through the first sample of each pixel: the distance along the ray at a planar distance of 1.
 class RayLengths {
  public:
   explicit RayLengths(const View& view) : projection_(view.projection) {

@@ -23,7 +23,8 @@ struct ColorPlanes {
 /// The planes R, G, B and, if there is one, A. None if one of R, G, B is missing or holds integers.
 [[nodiscard]] std::optional<ColorPlanes> color_planes(const Image& image);
 
-/// A fraction of 0 to 1 as 0 to `most`, rounded. Values out of range are clamped, NaN gives 0.
+/// A fraction from 0 to 1 as an integer from 0 to the greatest Value, rounded. Values out of range are clamped, NaN
+/// gives 0.
 template <class Value>
 [[nodiscard]] Value rounded_fraction(float fraction) {
   constexpr float most = float(std::numeric_limits<Value>::max());
@@ -31,7 +32,7 @@ template <class Value>
   return Value(double(above < 1 ? above : 1.0f) * most + 0.5);
 }
 
-/// The premultiplied colour of one pixel as sRGB with straight alpha; black if alpha is 0.
+/// Writes the premultiplied colour of one pixel as sRGB for straight alpha; black if alpha is 0.
 template <class Value>
 void store_srgb(const float (&color)[3], float alpha, Value* out) {
   const auto value = [](float linear) {
@@ -47,10 +48,10 @@ void store_srgb(const float (&color)[3], float alpha, Value* out) {
   }
 }
 
-/// Row y as bytes R, G, B, or R, G, B, A. Values out of range are clamped, NaN gives 0, and pixels with alpha 0 are
-/// black.
+/// Writes row y as bytes R, G, B, or R, G, B, A. Values out of range are clamped, NaN gives 0, and pixels with alpha 0
+/// are black.
 void srgb8_row(const ColorPlanes& planes, int y, bool with_alpha, std::uint8_t* row);
-/// srgb8_row() in 16 bits.
+/// Like srgb8_row(), with 16 bits a value.
 void srgb16_row(const ColorPlanes& planes, int y, bool with_alpha, std::uint16_t* row);
 
 }  // namespace frontmost

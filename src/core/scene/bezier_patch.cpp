@@ -26,7 +26,8 @@ BernsteinWeights bernstein_slope(PatchParameter t) {
   return {-first, first - middle, middle - last, last};
 }
 
-// Ends are added to ends, and middle to middle: the sum is the same for a curve and its reverse.
+// Adds the end points to each other first, and the middle points to each other, so that the sum is the same for a curve
+// and its reverse.
 glm::dvec3 blend(const CubicCurve& p, const BernsteinWeights& w) {
   return (p[0] * w[0] + p[3] * w[3]) + (p[1] * w[1] + p[2] * w[2]);
 }
@@ -43,8 +44,8 @@ glm::dvec3 blend(const BezierPatch& patch, const BernsteinWeights& u, const Bern
 PatchPoint evaluate_there(const BezierPatch& patch, PatchParameter u, PatchParameter v) {
   const BernsteinWeights wu = bernstein(u), wv = bernstein(v), du = bernstein_slope(u), dv = bernstein_slope(v);
   PatchPoint point{blend(patch, wu, wv), blend(patch, du, wv), blend(patch, wu, dv), {}};
-  // At a pole v has no effect. Near it, along_v is the distance in u times d2P / du dv, whose direction is the limit;
-  // from a pole at u = 1 that distance is negative.
+  // At a pole v has no effect. Near a pole, along_v is d2P / du dv times the distance from the pole in u, so its limit
+  // has the direction of d2P / du dv. At a pole at u = 1 that distance is negative.
   glm::dvec3 across = point.along_v;
   if (glm::dot(across, across) < 1e-20 * glm::dot(point.along_u, point.along_u))
     across = blend(patch, du, dv) * (u.value < 0.5 ? 1.0 : -1.0);

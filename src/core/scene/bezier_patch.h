@@ -21,12 +21,13 @@ namespace frontmost {
 /// A point of a patch, and the directions in which u and v grow there.
 struct PatchPoint {
   glm::dvec3 position, along_u, along_v;
-  /// Unit length, outward. At a pole, to which an edge of constant u is contracted, it is the limit. At other
-  /// degenerate points it is the normal of a nearby point, or zero if that has none either.
+  /// Normal of unit length, outward. At a pole, where an edge of constant u is contracted to a point, the normal is the
+  /// limit of the normals around it. At other degenerate points it is the normal of a nearby point, or zero if that has
+  /// none either.
   glm::dvec3 normal;
 };
 
-/// A parameter as a fraction with an explicit complement, so that walking an edge from the other end takes the same
+/// A parameter as a fraction with an explicit complement, so that walking an edge from the other end uses the same
 /// numbers: 1 - 9/10 is not 1/10 in binary.
 struct PatchParameter {
   double value, complement;
@@ -36,8 +37,8 @@ struct PatchParameter {
 }
 
 /// The point of a patch at (u, v). Uses only +, * and sqrt, so the bits are the same on every machine. Points on a
-/// common edge of two patches are bit-equal if their control points are, in whichever direction each patch runs along
-/// the edge.
+/// common edge of two patches are bit-equal if the control points of the edge are, in whichever direction each patch
+/// runs along the edge.
 [[nodiscard]] PatchPoint evaluate(const BezierPatch& patch, PatchParameter u, PatchParameter v);
 
 /// The 32 patches of the classic teapot, y up, standing on y = 0, spout towards +x: rim, upper and lower body, knob,

@@ -44,7 +44,7 @@ Scene make_teapot() {
 }
 
 // The second cube is turned by the angle of the 3-4-5 triangle about y, and pushed half its width along every axis. So
-// each cube cuts a corner out of the other, and no face lies in a face.
+// each cube cuts a corner out of the other, and no face lies in the plane of another one.
 Scene make_cubes() {
   Scene scene;
   const auto clay = add(scene, paint("clay", 0xC8553D));
@@ -59,8 +59,8 @@ Scene make_cubes() {
   return scene;
 }
 
-// Each triangle is a long wedge that gets nearer towards its tip. Its tip lies over the base of the next, all the way
-// round: any order of drawing gets one wrong. Faces look along +z.
+// Each triangle is a long wedge that gets nearer towards its tip. The tip lies over the base of the next triangle, all
+// the way round, so any order of drawing gets one triangle wrong. Faces look along +z.
 Scene make_cycle() {
   Scene scene;
   constexpr std::uint32_t kColors[3] = {0xD1495B, 0xEDAE49, 0x2E8B8B};

@@ -11,13 +11,13 @@ namespace frontmost {
 namespace {
 
 constexpr int kBlocks = 13;     // blocks along each side
-constexpr double kBlock = 46;   // of pavement, edge to edge
-constexpr double kStreet = 14;  // between pavements
+constexpr double kBlock = 46;   // side length of a block's pavement
+constexpr double kStreet = 14;  // width of the street between two pavements
 constexpr double kPitch = kBlock + kStreet;
 constexpr double kKerb = 0.15;
 constexpr double kFloorHeight = 3.6;
 
-// A well-mixed number for a place (x, y) and a question about it.
+// A hash of a place (x, y) and of the number of a question about the place.
 std::uint32_t hash(int x, int y, int question) {
   std::uint32_t h =
       std::uint32_t(x) * 0x9E3779B1u + std::uint32_t(y) * 0x85EBCA77u + std::uint32_t(question) * 0xC2B2AE3Du;
@@ -101,7 +101,7 @@ constexpr std::size_t kTowers = 7;  // index of the first tower: towers are of c
 
 // The meshes, each stored once.
 struct Stock {
-  std::array<std::array<std::uint32_t, 4>, kFloors.size()> buildings;  // by floors and wall
+  std::array<std::array<std::uint32_t, 4>, kFloors.size()> buildings;  // by number of floors and wall
   std::array<std::uint32_t, 4> houses, cars;
   std::array<std::uint32_t, 2> trees;
   std::uint32_t pavement, lawn, dash, ground;

@@ -31,7 +31,7 @@ Texture tiles() {
   return texture;
 }
 
-// Texture coordinates of a texture seen from above, `repeats` times to the unit.
+// Sets texture coordinates for a texture seen from above, which repeats `repeats` times per unit of length.
 void project_from_above(Mesh& mesh, double repeats) {
   mesh.texcoords = {};
   for (const glm::vec3& p : mesh.positions) mesh.texcoords.values.emplace_back(p.x * repeats, p.z * repeats);

@@ -11,7 +11,7 @@ namespace {
 constexpr float infinite = std::numeric_limits<float>::infinity();
 constexpr float largest_number = 1e12f;
 
-/// Pointers to const for a const material.
+/// Pointers to all texture uses of a material; pointers to const for a const material.
 template <class M>
 auto uses_of(M& m) {
   return std::array{&m.base_color_texture,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers of a material, and their ranges by frontmost/scene.h. Readers report what they change; shading changes it
-// silently, as scenes are also made by code.
+// The numbers of a material, and their ranges by frontmost/scene.h. Readers report the numbers that they change.
+// Shading changes numbers silently, because scenes are also made by code.
 //
 //   number                      range              NaN counts as
 //   base colour, metallic,

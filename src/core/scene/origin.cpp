@@ -19,7 +19,7 @@ namespace {
 
 constexpr double least_ratio = 4;  ///< ratio of distance to extent: below it an origin saves two bits at most
 constexpr double least_distance = 1024;
-constexpr double always_ratio = 128;  ///< far at this ratio, however small the units are
+constexpr double always_ratio = 128;  ///< above this ratio a model is far, however small the units are
 
 bool is_far(double distance, double extent) {
   return distance > least_ratio * extent && (distance > least_distance || distance > always_ratio * extent);
@@ -106,7 +106,7 @@ class PlacedPoints {
   }
 
   const Scene& scene_;
-  std::vector<std::optional<Box>> bounds_;  ///< by mesh; of the meshes searched so far
+  std::vector<std::optional<Box>> bounds_;  ///< by mesh; set for meshes that were searched
 };
 
 }  // namespace

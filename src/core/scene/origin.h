@@ -10,7 +10,7 @@ namespace frontmost {
 /// Finds an origin for points whose coordinates are known in doubles: a file's points, as a reader meets them, or
 /// vertices that a transform places. The origin is zero, and changes nothing, unless on one axis all points are far
 /// from zero: farther than four times their extent and 1024 units, or than 128 times their extent. The extent is that
-/// of all points along the axis on which it is the greatest.
+/// of all points along the axis on which they extend farthest.
 ///
 /// On axes on which the points are four extents from zero, the origin is the roundest number near them: a multiple of
 /// the greatest possible power of ten (below one: of two). So models that were moved by a round number are put back
@@ -24,7 +24,7 @@ class OriginSearch {
     // The first few points decide most models.
     if (!is_home_) include_far(point);
   }
-  /// True once no further point can change the origin from zero.
+  /// True if the origin is zero whatever points follow.
   [[nodiscard]] bool is_home() const { return is_home_; }
   [[nodiscard]] glm::dvec3 origin() const;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The guarantees of a valid scene, lists that match each other and numbers of things that exist; and adding to a scene,
-// which counts all numbers on from the existing ones.
+// Checks the guarantees of a valid scene: lists match each other, and numbers refer to things that exist. Also adds to
+// scenes; the numbers of the added things continue the existing ones.
 //
 // validate() stands between readers (and callers who make scenes by hand) and all other code. Errors name the mesh and
 // the triangle, as a file may have millions of triangles.

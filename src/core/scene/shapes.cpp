@@ -36,7 +36,7 @@ struct GridNumbers {
   int rows, columns;
 };
 
-// Adds both triangles of a quad, less one that a pole has contracted to a line.
+// Adds both triangles of a quad, except a triangle that a pole has contracted to a line.
 void add_quad(const glm::uvec4& corners, const glm::uvec4& texcoords, Mesh& mesh) {
   const glm::uvec4 &c = corners, &t = texcoords;
   if (c[0] != c[1]) {
@@ -186,7 +186,7 @@ Mesh round_slab(const RoundSlab& slab, int segments) {
 
 namespace {
 
-// Appends the part's values to the mesh's own, and the value numbers of its corners.
+// Appends the values of a part to an attribute of the mesh, and the numbers of the values at the part's corners.
 template <class T>
 void append_values(Attribute<T>& attribute, const std::vector<T>& values, const std::vector<glm::uvec3>& corners) {
   const auto first = std::uint32_t(attribute.values.size());

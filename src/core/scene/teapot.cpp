@@ -2,8 +2,9 @@
 // The classic teapot: its control points, and its triangles.
 //
 // M. Newell. The Utilization of Procedure Models in Digital Image Synthesis. University of Utah, 1975; the bottom was
-// added by F. Crow, 1987. In the usual list of 306 points and 32 patches most numbers are reflections of a few: turned
-// parts are profiles, handle and spout are halves. This file lists only numbers that are not reflections.
+// added by F. Crow, 1987. In the usual list of 306 points and 32 patches most numbers are reflections of a few others:
+// parts with a profile are turned about the axis, and handle and spout consist of two halves each. This file lists only
+// numbers that are not reflections.
 //
 // Every patch becomes a grid of triangles, and points that two patches share are stored once. Patches of one part (body
 // with lid and bottom, handle, spout) are welded where their points agree to the bit, which evaluate() guarantees along
@@ -35,8 +36,8 @@ constexpr std::array<ProfileRing, 4> kLid{
     {{0.2, 0.112, 2.7}, {0.4, 0.224, 2.55}, {1.3, 0.728, 2.55}, {1.3, 0.728, 2.4}}};
 constexpr std::array<ProfileRing, 4> kBottom{{{1.5, 0.84, 0.15}, {1.5, 0.84, 0.075}, {1.425, 0.798, 0}, {0, 0, 0}}};
 
-// One half ring of a bent tube: a loop of four points that starts and ends in the mirror plane. Both middle points lie
-// `width` off the plane, beside the first and the last.
+// One half ring of a bent tube: a loop of four points that starts and ends in the mirror plane. The two middle points
+// lie `width` off the plane, one beside the first point and one beside the last.
 struct Loop {
   double first_x, first_height, last_x, last_height, width;
 };

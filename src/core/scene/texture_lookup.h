@@ -36,14 +36,15 @@ namespace frontmost {
   return 0.0f;
 }
 
-/// A texel number one past an end: the other end if the texture repeats, else the same texel again.
+/// Maps a texel number that is one past an end: to the other end if the texture repeats, else back to the last texel.
 [[nodiscard]] inline int neighbour(int i, int size, Texture::Wrap wrap) {
   if (i < 0) return wrap == Texture::Wrap::repeat ? size - 1 : 0;
   if (i >= size) return wrap == Texture::Wrap::repeat ? 0 : size - 1;
   return i;
 }
 
-/// The two texels on either side of a coordinate, along one axis, and its distance from the first to the second.
+/// The two texels on either side of a coordinate, along one axis. `fraction` is the coordinate's distance from the
+/// middle of the first texel, in texels.
 struct TexelPair {
   int first, second;
   float fraction;

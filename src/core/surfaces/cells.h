@@ -23,15 +23,15 @@ struct SpaceCell {
   [[nodiscard]] std::uint32_t x() const { return packed & mask; }
   [[nodiscard]] std::uint32_t y() const { return packed >> y_shift & mask; }
   [[nodiscard]] std::uint32_t z() const { return packed >> z_shift; }
-  /// True if `other` is from one cell before to two cells after this one, along every axis.
+  /// True if `other` lies, along every axis, from one cell before this cell to two cells after it.
   [[nodiscard]] bool is_near(SpaceCell other) const {
-    // One bit above each place is lent to it, so that no difference borrows from the next.
+    // The bit above each place is set before the subtraction, so that no difference borrows from the next place.
     constexpr std::uint64_t ones = 1 | 1ull << y_shift | 1ull << z_shift, lent = ones << 10;
     return (((((other.packed | lent) - packed) + ones) ^ lent) & ~(3 * ones)) == 0;
   }
 };
 
-/// Maps the sum of a triangle's vertices, in mesh space, to its place in the grid, in cells.
+/// Maps the sum of a triangle's vertices, in mesh space, to the triangle's place in the grid, in cells.
 struct CellMap {
   std::array<std::array<float, 4>, 3> rows;  ///< by axis: factors of x, y, z, and the constant term
   float last = 0;                            ///< the greatest place along an axis

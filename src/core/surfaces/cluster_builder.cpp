@@ -21,10 +21,12 @@
 namespace frontmost {
 namespace {
 
-// Large enough that the short clusters at the end of each part do not matter, small enough to keep all threads busy.
+// A part is so large that the short clusters at the ends of parts do not matter, and so small that all threads are kept
+// busy.
 constexpr std::uint32_t kRunsPerPart = 1u << 13;
 
-/// Some runs of the spatial order, and the clusters made of them. The clusters' ids are those of the runs, in order.
+/// Some runs of the spatial order, and the clusters made of them. The ids of the clusters' triangles are those of the
+/// runs, in order.
 struct ClusterPart {
   std::size_t begin = 0;          // first of the runs
   std::vector<Cluster> clusters;  // first_vertex and first_triangle relative to the part
@@ -66,7 +68,8 @@ class PartBuilder {
     start_cluster();
     for (std::size_t i = begin; i < end; ++i) {
       prefetch(i, end);
-      // Other code draws triangles with holes, cluster by cluster, so no cluster may hold both kinds.
+      // Triangles with holes are drawn by other code, cluster by cluster, so no cluster may hold triangles of both
+      // kinds.
       if (i == source_.first_cutout) start_next_cluster();
       const TriangleRun run = run_at(i);
       for (std::uint32_t k = 0; k < run.count; ++k) add(run.first + k);
@@ -92,8 +95,8 @@ class PartBuilder {
     return {number, firsts[number], firsts[number + 1] - firsts[number], mesh.triangles.data(), mesh.positions.data()};
   }
 
-  /// Runs that are neighbours in space are often far apart in memory: vertex numbers are prefetched well ahead, and the
-  /// positions that they name a little later.
+  /// Runs that are neighbours in space are often far apart in memory. So vertex numbers are prefetched well ahead, and
+  /// the positions to which they refer a little later.
   void prefetch(std::size_t i, std::size_t end) const {
     constexpr std::size_t kCornersAhead = 48, kPositionsAhead = 24;
     if (i + kCornersAhead >= end) return;
@@ -120,7 +123,7 @@ class PartBuilder {
     if (!placed_.holds(id)) {
       placed_ = place_of(id);
       to_world_.emplace(source_.placed.scene->instances[placed_.number].world_from_mesh);
-      // Without a transform, the spatial order has tested the vertices already.
+      // If there is no transform, spatial_order() has already tested the vertices.
       must_check_ = !to_world_->is_identity() || source_.order.all_finite[placed_.number] == 0;
     }
     const glm::uvec3& corners = placed_.corners(id);
@@ -153,7 +156,7 @@ class PartBuilder {
     for (std::size_t k = 0; k < 3; ++k) numbers[k] = table_.intern(triangle.key[k], triangle.world[k]);
   }
 
-  /// \returns false, with the table unchanged, if there is not enough room.
+  /// Finds or adds the vertices of a triangle. \returns false, with the table unchanged, if there is not enough room.
   bool intern_into_rest(const Corners& triangle, std::array<std::uint8_t, 3>& numbers) {
     if (table_.size() + 3 <= Cluster::max_vertices) {
       intern(triangle, numbers);
@@ -162,7 +165,7 @@ class PartBuilder {
     std::size_t missing = 0;
     for (std::size_t k = 0; k < 3; ++k) missing += (numbers[k] = table_.find(triangle.key[k])) == VertexTable::none;
     if (table_.size() + missing > Cluster::max_vertices) return false;
-    // Known vertices are not looked up again: adding one may overwrite the guess of another.
+    // Vertices that were found are not looked up again, because adding a vertex may overwrite the guess of another one.
     for (std::size_t k = 0; k < 3; ++k)
       if (numbers[k] == VertexTable::none) numbers[k] = table_.intern(triangle.key[k], triangle.world[k]);
     return true;
@@ -204,7 +207,7 @@ class PartBuilder {
   std::array<std::array<std::uint8_t, padded_to_lanes(Cluster::max_triangles)>, 3> corners_;
 };
 
-/// The beginning of each part's clusters, vertices and triangles in the whole set.
+/// Where the clusters, vertices and triangles of a part begin in the whole set.
 struct Place {
   std::size_t cluster = 0, vertex = 0, triangle = 0;
 };
@@ -230,7 +233,7 @@ void place_ids(const ClusterPart& part, const SpatialOrder& order, PrimitiveId* 
 }
 
 void gather(ClusterSet& set, std::vector<ClusterPart>& parts, const SpatialOrder& order, const Execution& execution) {
-  // All places are known before anything is copied, so parts are copied at once and in any order.
+  // All places are known before anything is copied, so parts are copied at the same time and in any order.
   std::vector<Place> places(parts.size() + 1);
   for (std::size_t i = 0; i < parts.size(); ++i)
     places[i + 1] = {places[i].cluster + parts[i].clusters.size(), places[i].vertex + parts[i].x.size(),
@@ -244,7 +247,7 @@ void gather(ClusterSet& set, std::vector<ClusterPart>& parts, const SpatialOrder
 
   parallel_for(execution, parts.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      // Moved out, so that its memory is freed as soon as it is copied: the whole set never exists twice.
+      // The part is moved out, so that its memory is freed as soon as it is copied: the whole set never exists twice.
       const ClusterPart part = std::move(parts[i]);
       const Place& at = places[i];
       place(part.x, set.x, at.vertex);
@@ -265,8 +268,8 @@ void gather(ClusterSet& set, std::vector<ClusterPart>& parts, const SpatialOrder
   });
 }
 
-/// Moves triangles that may have holes to the end of the order; runs that hold both kinds are split. \returns the first
-/// run with cutouts.
+/// Moves triangles that may have holes to the end of the order; runs with triangles of both kinds are split. \returns
+/// the number of the first run with cutouts.
 std::size_t part_cutouts(const Cutouts* cutouts, Buffer<std::uint64_t>& runs) {
   if (!cutouts) return runs.size();
   std::vector<std::uint64_t> kinds[2];
@@ -307,7 +310,7 @@ void BoxArrays::set(std::size_t i, const Box& box) {
 ClusterSet build_clusters(const PlacedScene& placed, const Execution& execution) {
   ClusterSet set;
   set.cutouts = placed.cutouts;
-  // The progress fractions are about the steps' shares of the time.
+  // The progress fractions are roughly the shares of the time that the steps take.
   SpatialOrder order = spatial_order(placed, execution);
   const std::size_t first_cutout = part_cutouts(set.cutouts.get(), order.runs);
   report_progress(execution, "surfaces", 0.4);

@@ -38,7 +38,7 @@ struct Cluster {
   std::uint16_t triangle_count = 0;
 };
 
-/// World-space boxes, one array a side, padded to whole vectors of 16 with empty boxes.
+/// World-space boxes, with one array for each side of the boxes, padded to whole vectors of 16 with empty boxes.
 struct BoxArrays {
   Buffer<float> low_x, low_y, low_z, high_x, high_y, high_z;
 
@@ -52,7 +52,7 @@ struct BoxArrays {
 
 struct ClusterSet;
 
-/// The directions that the triangles of each cluster may face: they tell if none of them faces the eye. (L. A. Shirman,
+/// The cones of normals of all clusters: they tell which clusters have no triangle that faces the eye. (L. A. Shirman,
 /// S. S. Abi-Ezzi. The Cone of Normals Technique for Fast Processing of Curved Patches. 1993.)
 ///
 ///         \  axis  /
@@ -61,24 +61,25 @@ struct ClusterSet;
 ///            \|/
 ///       ------+------ surface
 ///
-/// All triangles face away from the eye if even the cone's direction that is turned most towards it faces away, from
-/// every place of the cluster's box.
+/// All triangles face away from the eye if, from every place of the cluster's box, even the direction of the cone that
+/// is turned most towards the eye points away from the eye.
 ///
-/// By cluster: a cone that holds the outward normals of all triangles with distinct vertices; mirrored instances have
-/// the cluster's reversed winding. Every normal is within kConeRounding, in radians, of the stored cone. Padded to
-/// whole vectors of 16.
+/// By cluster: a cone that holds the outward normals of all triangles with distinct vertices. Triangles of mirrored
+/// instances count with the reversed winding that the cluster stores. Every normal is within kConeRounding, in radians,
+/// of the stored cone. Padded to whole vectors of 16.
 struct ConeArrays {
   Buffer<float> x, y, z;   ///< axis, of length 1
   Buffer<float> cosine;    ///< cosine of half the opening angle, greater than 0
   Buffer<float> altitude;  ///< the least altitude of all these triangles; 0 if there is no usable cone
 };
 
-/// The normal of a triangle that is 2^12 times as long as it is high errs by 2^-9; a flatter triangle leaves its
-/// cluster without a cone. The cosine of a closed cone errs by 2^-22, and so the angle by 2^-10.5.
+/// A bound of rounding errors, in radians. The normal of a triangle that is 2^12 times as long as it is high errs by
+/// 2^-9; a flatter triangle leaves its cluster without a cone. The cosine of a cone whose normals all agree errs by
+/// 2^-22, and so the angle by 2^-10.5.
 inline constexpr float kConeRounding = 3.0f / 1024.0f;
 
-/// Makes the cones of a set. O(triangles), in parallel: 3 ms a million triangles on one thread, a tenth of the time for
-/// clusters.
+/// Makes the cones of a set. O(triangles), in parallel: 3 ms a million triangles on one thread, a tenth of the time
+/// that making the clusters takes.
 [[nodiscard]] ConeArrays make_cones(const ClusterSet& set, const Execution& execution);
 
 /// The cones of a set, made when a caller first needs them.
@@ -88,7 +89,7 @@ class LazyCones {
   [[nodiscard]] const ConeArrays& get(const ClusterSet& set, const Execution& execution) const;
   /// The cones, or null if they have not been made.
   [[nodiscard]] const ConeArrays* made() const { return made_->cones.load(); }
-  /// Tells the set from every other one that ever lived.
+  /// Identifies the set among all sets that ever existed.
   [[nodiscard]] std::weak_ptr<const void> identity() const { return made_; }
   [[nodiscard]] std::size_t byte_count() const;
   /// Updates existing cones of some clusters after their triangles moved. Not while another call runs.

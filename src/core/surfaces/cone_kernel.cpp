@@ -52,12 +52,13 @@ class ConeMaker {
     if (!(widest > 0 && widest <= kMost && scale <= kMost)) return Leave(i, cones);
     FindNormals(set_.clusters[i], scale);
     const DF d;
-    // A triangle whose normal is mostly rounding could face either way, so its cluster could never be left out.
+    // A triangle whose normal is mostly rounding error could face either way, so its cluster could never be left out.
     if (!hn::AllFalse(d, too_flat_)) return Leave(i, cones);
     const float squared_altitude = Least(least_squared_altitude_);
     if (squared_altitude == kMost) return Leave(i, cones);  // no triangle has a normal
     const glm::vec3 axis = Axis();
-    // Normals that cancel out have no axis. Tested here, as Min of NaN and a number depends on the processor.
+    // If normals cancel out, there is no axis. This is tested here, because Min of NaN and a number depends on the
+    // processor.
     if (!(glm::dot(axis, axis) <= kMost)) return Leave(i, cones);
     const float cosine = LeastCosine(axis), altitude = std::sqrt(squared_altitude) * widest;
     if (!(cosine > 0 && altitude > 0 && altitude <= kMost)) return Leave(i, cones);
@@ -96,7 +97,7 @@ class ConeMaker {
     for (std::size_t t = 0; t < cluster.triangle_count; t += hn::Lanes(d)) {
       const std::size_t at = cluster.first_triangle + t;
       const VI i0 = Load(set_.i0, at), i1 = Load(set_.i1, at), i2 = Load(set_.i2, at);
-      // Coincident vertices still coincide once they are snapped: such a triangle, like padding, faces nobody.
+      // Coincident vertices still coincide once they are snapped, so such a triangle is never seen, like padding.
       const MF none = hn::RebindMask(d, hn::Or(hn::Or(hn::Eq(i0, i1), hn::Eq(i1, i2)), hn::Eq(i0, i2)));
       AddNormals(Fetch(cluster, i0), Fetch(cluster, i1), Fetch(cluster, i2), none, scale);
     }
@@ -109,9 +110,9 @@ class ConeMaker {
     ab = {hn::Mul(ab.x, s), hn::Mul(ab.y, s), hn::Mul(ab.z, s)};
     ac = {hn::Mul(ac.x, s), hn::Mul(ac.y, s), hn::Mul(ac.z, s)};
     const ConeVector bc = Sub(ac, ab), normal = Cross(ab, ac);
-    const VF squared = Dot(normal, normal);  // square of altitude times longest edge
+    const VF squared = Dot(normal, normal);  // square of the product of altitude and longest edge
     const VF longest = hn::Max(Dot(ab, ab), hn::Max(Dot(ac, ac), Dot(bc, bc)));
-    // 2^-100 is far above numbers that a float does not hold to full precision.
+    // 2^-100 is far above subnormal floats, which have less than full precision.
     const VF least = hn::Max(hn::Mul(hn::Mul(longest, longest), hn::Set(d, 0x1p-24f)), hn::Set(d, 0x1p-100f));
     too_flat_ = hn::Or(too_flat_, hn::AndNot(none, hn::Not(hn::Ge(squared, least))));
     least_squared_altitude_ = hn::Min(least_squared_altitude_, hn::IfThenElse(none, most, hn::Div(squared, longest)));

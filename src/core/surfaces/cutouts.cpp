@@ -98,8 +98,8 @@ std::shared_ptr<Cutouts> Cutouts::of(const Scene& scene, const std::vector<Primi
   cutouts->words_.resize(first_primitives.back() / 64 + 1);
   for (std::size_t i = 0; i < scene.instances.size(); ++i)
     cutouts->add_mesh(scene, scene.instances[i], first_primitives[i]);
-  // A bit for each triangle and a sum for each word: an id's index is a count of bits. A table would take four bytes
-  // for every triangle of the scene.
+  // There is a bit for each triangle and a sum for each word, so an id's index is found by counting bits. A table would
+  // take four bytes for every triangle of the scene.
   std::uint32_t before = 0;
   for (Word& word : cutouts->words_) {
     word.before = before;

@@ -13,7 +13,7 @@
 
 namespace frontmost {
 
-/// A material's holes.
+/// The rule that tells where a material has holes.
 struct CutoutPattern {
   float alpha = 1, cutoff = 0.5f;  ///< alpha factor, and the least alpha that is solid
   TexcoordTransform transform{TextureUse{}};
@@ -28,7 +28,7 @@ struct CutoutPattern {
   [[nodiscard]] float texture_alpha(const glm::vec2& texcoord) const;
 };
 
-/// Weights with the sum 1, none negative, proportional to `values`; equal weights if the values define none.
+/// Weights proportional to `values`, with the sum 1 and none negative; equal weights if the values define none.
 [[nodiscard]] glm::vec3 normalized_weights(const glm::dvec3& values);
 
 struct CutoutTriangle {

@@ -11,8 +11,9 @@
 
 namespace frontmost {
 
-/// Lists by instance the numbers of the groups that hold triangles of it, each once and in order. ids_of(group) gives
-/// the ids of a group's triangles; numbers beyond the last id belong to no triangle. O(triangles), on one thread.
+/// Lists for each instance the groups that hold triangles of the instance: each group's number once, in order.
+/// ids_of(group) returns the ids of a group's triangles; ids beyond the last one belong to no triangle. O(triangles),
+/// on one thread.
 template <class IdsOf>
 [[nodiscard]] Buckets<std::uint32_t> groups_by_instance(const std::vector<PrimitiveId>& first_primitives,
                                                         std::size_t group_count, const IdsOf& ids_of) {

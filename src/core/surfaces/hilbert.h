@@ -16,7 +16,7 @@ struct CellPose {
   [[nodiscard]] constexpr std::uint32_t number() const { return entry * 3 + direction; }
 };
 
-/// The place of one of the eight parts of a cell in the order, and the curve's pose in it.
+/// The place on the curve of one of the eight parts of a cell, and the curve's pose in this part.
 struct HilbertStep {
   std::uint32_t place;
   CellPose inside;
@@ -29,7 +29,7 @@ constexpr std::uint32_t rotate_left(std::uint32_t bits, std::uint32_t by) {
 constexpr std::uint32_t gray(std::uint32_t i) { return i ^ i >> 1; }
 constexpr std::uint32_t trailing_ones(std::uint32_t i) { return i & 1 ? 1 + trailing_ones(i >> 1) : 0; }
 
-/// `part` has one bit an axis.
+/// The step for a part of a cell; `part` has one bit an axis.
 constexpr HilbertStep step(const CellPose& pose, std::uint32_t part) {
   const std::uint32_t turned = rotate_left(part ^ pose.entry, 2 - pose.direction);
   const std::uint32_t place = (turned ^ turned >> 1 ^ turned >> 2) & 7;  // gray(place) == turned
@@ -38,7 +38,8 @@ constexpr HilbertStep step(const CellPose& pose, std::uint32_t part) {
   return {place, {pose.entry ^ rotate_left(entry, pose.direction + 1), (pose.direction + direction + 1) % 3}};
 }
 
-/// Two levels at a time: for a pose and two parts, the next pose and the two places, each in six bits.
+/// A table of two levels at a time. For a pose and the parts of both levels, an entry holds the next pose and, in its
+/// lower six bits, the two places.
 inline constexpr auto kSteps = [] {
   std::array<std::uint16_t, 24 * 64> steps{};
   for (std::uint32_t pose = 0; pose < 24; ++pose)
@@ -56,7 +57,7 @@ inline constexpr auto kSteps = [] {
 /// at most 30 bits.
 [[nodiscard]] inline std::uint32_t hilbert_place(std::uint32_t morton, int levels) {
   std::uint32_t pose = 0, place = 0;
-  // An odd number of levels counts one more, whose first part is part 0 at place 0.
+  // If the number of levels is odd, one level is added on top, of which only part 0, at place 0, is used.
   for (int shift = (levels - 1) / 2 * 6; shift >= 0; shift -= 6) {
     const std::uint32_t next = hilbert_detail::kSteps[pose | (morton >> shift & 63)];
     place = place << 6 | (next & 63);

@@ -96,13 +96,13 @@ PlacedScene place_scene(const Scene& scene, const Execution& execution) {
 
 namespace {
 
-/// Room only grows, and is always written anew.
+/// \returns room for `count` positions, whose contents are left over from earlier use. The scratch memory only grows.
 std::span<glm::vec3> room_for(std::size_t count, WorldScratch& scratch) {
   if (scratch.positions.size() < count) scratch.positions.resize(count);
   return std::span(scratch.positions).first(count);
 }
 
-/// The vertices of triangles, each once, in the order of their first use.
+/// Gathers the vertices of triangles, each once, in the order of their first use.
 std::span<glm::vec3> gather_vertices(std::span<const glm::uvec3> corners, const std::vector<glm::vec3>& positions,
                                      const NumberRange& numbers, WorldScratch& scratch) {
   const std::span<glm::vec3> room = room_for(3 * corners.size(), scratch);
@@ -118,7 +118,7 @@ std::span<glm::vec3> gather_vertices(std::span<const glm::uvec3> corners, const 
   scratch.corners.resize(corners.size());
   for (std::size_t i = 0; i < corners.size(); ++i)
     for (int k = 0; k < 3; ++k) {
-      // Written whether it is new or not, as a branch would be unpredictable.
+      // The vertex is written whether it is new or not, because a branch would be unpredictable.
       std::uint32_t& place = known[corners[i][k] - numbers.low];
       const bool is_new = place < from;
       room[next - from] = positions[corners[i][k]];
@@ -160,7 +160,8 @@ WorldTriangles world_triangles(const PlacedScene& placed, const MeshRange& range
 
 namespace {
 
-/// The sides of the materials of one mesh's triangles, or of several meshes.
+/// Whether triangles of a mesh, or of several meshes, have double-sided materials, and whether any have single-sided
+/// ones.
 struct SidesFound {
   bool is_any_double = false, is_any_single = false;
 

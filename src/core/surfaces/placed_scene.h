@@ -27,7 +27,7 @@ namespace frontmost {
   return glm::determinant(glm::dmat3(world_from_mesh)) < 0;
 }
 
-/// The world-space position of a vertex, in the one rounding that all code uses.
+/// The world-space position of a vertex, rounded in the one way that all code uses.
 [[nodiscard]] inline glm::vec3 to_world(const glm::dmat4& world_from_mesh, const glm::vec3& p) {
   const glm::dvec3 q(p);
   const glm::dmat4& m = world_from_mesh;
@@ -36,12 +36,12 @@ namespace frontmost {
           float(m[0][2] * q.x + m[1][2] * q.y + m[2][2] * q.z + m[3][2])};
 }
 
-/// Whether a cluster has one vertex for both positions.
+/// Whether a cluster has a single vertex for two positions of an instance: their bits are the same.
 [[nodiscard]] inline bool has_same_bits(const glm::vec3& a, const glm::vec3& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-/// to_world() for many vertices of one instance; most files have no transform at all.
+/// to_world() for many vertices of one instance. Copies them if there is no transform, as in most files.
 class ToWorld {
  public:
   explicit ToWorld(const glm::dmat4& world_from_mesh)
@@ -58,28 +58,29 @@ class ToWorld {
 struct NumberRange {
   std::uint32_t low, high;
 
-  /// Whether it is best to read all vertices of the range for so many triangles, as in files whose order is not random.
+  /// Whether so many triangles use most vertices of the range, so that it is best to read all of them; true in files
+  /// whose order is not random.
   [[nodiscard]] bool is_dense(std::size_t triangle_count) const { return high - low < 6 * triangle_count; }
 };
 
 /// Consecutive triangles of one instance.
 struct MeshRange {
-  /// Drawing so many takes long compared with handing them to a thread, and their vertices stay in the second-level
-  /// cache.
+  /// Drawing so many triangles takes long compared with handing them to a thread, and their vertices stay in the
+  /// second-level cache.
   static constexpr std::uint32_t most_triangles = 2048;
   /// Triangles in a box of PlacedScene::boxes.
   static constexpr std::uint32_t triangles_in_box = 64;
 
   std::uint32_t instance;
   std::uint32_t begin, end;  ///< within the mesh
-  NumberRange vertices;      ///< bounds of all vertex numbers; may be wider than they are
+  NumberRange vertices;      ///< bounds of all vertex numbers, perhaps not the tightest ones
   std::uint32_t first_box;
 
   [[nodiscard]] std::uint32_t count() const { return end - begin; }
   [[nodiscard]] std::uint32_t box_count() const { return (count() + triangles_in_box - 1) / triangles_in_box; }
 };
 
-/// The instances that have moved, for owners of derived data. Moves are numbered from the making of the surfaces.
+/// The instances that have moved, for owners of derived data. Moves are numbered from 0, since the surfaces were made.
 class MoveLog {
  public:
   [[nodiscard]] std::uint64_t count() const { return first_ + instances_.size(); }
@@ -110,15 +111,16 @@ class MoveLog {
 /// A scene whose indices have all been checked.
 struct PlacedScene {
   const Scene* scene = nullptr;
-  std::vector<PrimitiveId> first_primitives;  ///< by instance; then the total
+  std::vector<PrimitiveId> first_primitives;  ///< first id of each instance; then the number of all ids
   std::vector<std::uint8_t> mirrored;         ///< by instance: whether its triangles have their last two vertices
                                               ///< swapped
   std::shared_ptr<Cutouts> cutouts;           ///< null if no triangle may have holes
   std::shared_ptr<const MaterialSides> sides;
   std::vector<MeshRange> ranges;  ///< ranges of all triangles, in the order of their ids
-  std::vector<Box> boxes;         ///< boxes of a few consecutive triangles each, those with finite vertices
+  std::vector<Box> boxes;         ///< each around a few consecutive triangles, those with finite vertices
   std::vector<Box> instance_bounds;
-  /// Boxes around 16 consecutive boxes of the level below, the lowest level around instances; up to a single box.
+  /// Each box encloses 16 consecutive boxes of the level below, or, on the lowest level, 16 instances. The last level
+  /// has a single box.
   std::vector<std::vector<Box>> levels;
   Box bounds;
   MoveLog moves;
@@ -205,7 +207,8 @@ struct WorldScratch {
   std::uint32_t known_from = 1;
 };
 
-/// The triangles of a range, every vertex once: all vertices of the range of numbers if it is dense, else those in use.
+/// The triangles of a range, with every vertex once: all vertices of the range of numbers if that is dense, else those
+/// in use.
 [[nodiscard]] WorldTriangles world_triangles(const PlacedScene& placed, const MeshRange& range, Isa isa,
                                              WorldScratch& scratch);
 /// to_world() of each position, to the bit. `to` has the size of `from`, and may be the same array.

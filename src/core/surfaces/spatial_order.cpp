@@ -2,12 +2,12 @@
 // The order along Hilbert's curve, computed from Morton codes.
 // G. Morton. A Computer Oriented Geodetic Data Base and a New Technique in File Sequencing. 1966.
 //
-// The order of the file would do for many meshes, but scattered ones are drawn up to seven times slower. Morton's own
-// order jumps: its clusters are scattered more, and a frame takes 2 to 8 % longer, for 4 ns a triangle saved here.
-// Looking through the next triangles for ones that fit a full cluster does not pay: 32 triangles ahead add 2 % more
-// triangles to a cluster, take a sixth of the time for clusters and gain nothing measurable. Sorting short runs of the
-// file halves the time. Runs must lie together: a run from the end of a row to the beginning of the next makes a
-// cluster as long as the model, and a frame a third slower.
+// The order of the file would do for many meshes, but scattered meshes are drawn up to seven times slower. Morton's own
+// order jumps, so its clusters are scattered more. It saves 4 ns a triangle here, but a frame takes 2 to 8 % longer.
+// Looking through the next triangles for some that fit into a full cluster does not pay. Looking 32 triangles ahead
+// adds 2 % more triangles to a cluster and a sixth to the time of making clusters, and gains nothing measurable.
+// Sorting short runs of the file halves the time. The triangles of a run must lie together: a run from the end of a row
+// to the beginning of the next makes a cluster as long as the model, and a frame a third slower.
 //
 // Runs are sorted by radix_sort(), whose least significant digit comes first. Each chunk counts its digits; a prefix
 // sum over (digit, chunk) gives every chunk the places of its items, so chunks scatter independently and stably.
@@ -34,7 +34,7 @@ namespace {
 
 constexpr int kDigitBits = 11;
 constexpr std::size_t kDigits = std::size_t(1) << kDigitBits;
-// A chunk's counts, 8 KiB, stay in the first-level cache while its quarter of a megabyte is read.
+// A chunk's counts, 8 KiB, stay in the first-level cache while the chunk's items, a quarter of a megabyte, are read.
 constexpr std::size_t kChunk = std::size_t(1) << 15;
 
 /// Some bits of an item.
@@ -137,7 +137,8 @@ class Grid {
   double cells_, scale_;
 };
 
-/// Bits that leave about 50 triangles in each cell: a surface crosses about 2.5 r^2 of r^3 cells.
+/// The number of bits that leaves about 50 triangles in each cell. Of the r^3 cells of a grid, a surface crosses about
+/// 2.5 r^2.
 int bits_per_axis(std::size_t triangle_count) {
   const double cells_across = std::sqrt(double(triangle_count) / 125.0);
   return std::clamp(int(std::ceil(std::log2(std::max(cells_across, 1.0)))), 1, 10);

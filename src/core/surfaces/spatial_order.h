@@ -21,7 +21,7 @@ namespace frontmost {
 /// Finds the instance of a primitive in constant time: a starting point every 64 ids, then a short search.
 class InstanceFinder {
  public:
-  /// `first_primitives` has the first id by instance, then the total; borrowed.
+  /// `first_primitives` has the first id of each instance, then the number of all ids; borrowed.
   explicit InstanceFinder(const std::vector<PrimitiveId>& first_primitives);
   [[nodiscard]] std::uint32_t find(PrimitiveId id) const {
     std::uint32_t instance = start_[id / kStride];
@@ -43,7 +43,7 @@ struct TriangleRun {
   PrimitiveId first;
   std::uint32_t count;
 
-  /// 64 bits: count, the place on the curve in 30 bits, first.
+  /// Packs the run into 64 bits: count - 1 in 2 bits, the place on the curve in 30 bits, and `first` in 32 bits.
   [[nodiscard]] std::uint64_t packed(std::uint32_t place) const {
     return std::uint64_t(count - 1) << 62 | std::uint64_t(place) << 32 | first;
   }
@@ -55,8 +55,9 @@ struct SpatialOrder {
   std::vector<std::uint8_t> all_finite;  ///< by instance: not 0 if all vertices are finite in mesh space
 };
 
-/// Runs in the order of the cells of their first triangles' centroids along Hilbert's curve; within a cell by id. Cells
-/// hold some tens of triangles of an ordinary surface. O(triangles), 5 to 16 bytes a triangle while it runs.
+/// All runs, ordered along Hilbert's curve by the cell that contains the centroid of their first triangle; within a
+/// cell by id. Cells hold some tens of triangles of an ordinary surface. O(triangles), 5 to 16 bytes a triangle while
+/// it runs.
 [[nodiscard]] SpatialOrder spatial_order(const PlacedScene& placed, const Execution& execution);
 
 }  // namespace frontmost

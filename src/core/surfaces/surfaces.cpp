@@ -3,7 +3,7 @@
 //
 // Most data of a method is made here once and only read afterwards. Clusters are the exception: a single picture is
 // drawn sooner without them. So the first method that needs clusters makes them, under a lock, behind a const
-// interface. After one instance moved, only data that depends on the instance is computed again:
+// interface. After one instance moved, only the data that depend on this instance are computed again:
 //
 //   boxes, bounds    of its ranges of triangles
 //   holes            places of its triangles
@@ -36,7 +36,7 @@ struct Surfaces::State {
 
 Surfaces::Surfaces(const Scene& scene, const Execution& execution) {
   const IeeeScope ieee;
-  // All checks are here: behind this point no method checks an index or a transform again.
+  // All checks are here: after this point no method checks an index or a transform again.
   validate_besides_vertices(scene);
   check_transforms(scene);
   auto state = std::make_unique<State>();
@@ -166,7 +166,8 @@ void PlacedScene::follow(std::uint32_t instance, Isa isa) {
   }
   follow_bounds(instance);
   if (!has_cutouts(instance)) return;
-  // An index keeps its cutouts until it follows, so shared cutouts are copied.
+  // A RayIndex keeps its cutouts until RayIndex::follow() is called, so shared cutouts are copied before they are
+  // moved.
   if (cutouts.use_count() > 1) cutouts = std::make_shared<Cutouts>(*cutouts);
   cutouts->move(scene->meshes[scene->instances[instance].mesh], world_from_mesh, first_primitives[instance]);
 }

@@ -2,9 +2,9 @@
 // Passes over the vertices and triangles of a scene, a vector of them at a time: places in the world, boxes, extremes
 // of vertex numbers, and cells of a grid.
 //
-// Vertices go to the world in doubles, each product and sum in the order of to_world(), and are rounded once, so that
-// the bits are the same. A vertex that is not finite must not get into a box. It is found by adding x - x to a sum,
-// which adds 0 for finite numbers and NaN for others.
+// Vertices are transformed to world space in doubles, each product and sum in the order of to_world(), and are rounded
+// once, so the bits are the same as there. A vertex that is not finite must not get into a box. Such a vertex is found
+// by adding x - x to a sum, which adds 0 for finite numbers and NaN for others.
 //
 // The cell of a triangle is that of the sum of its vertices. One matrix (CellMap) combines the factor of a third, the
 // transform of the instance and the size of a cell, so that none of them takes a step of its own. The order of cells
@@ -36,7 +36,7 @@ void PlaceVertices(const glm::dmat4& m, std::span<const glm::vec3> from, glm::ve
 
 #else
 
-/// The transform of one axis.
+/// One row of a transform, which computes one coordinate.
 template <class DD>
 class WorldRow {
  public:
@@ -109,8 +109,8 @@ class BoxFinder {
   explicit BoxFinder(const WorldTriangles& triangles)
       : positions_(&triangles.positions.data()->x), first_(std::int32_t(triangles.first_position)) {}
 
-  /// The box of consecutive triangles, at least one. \returns false if a vertex may not be finite; the box then means
-  /// nothing.
+  /// Finds the box of consecutive triangles, at least one. \returns false if a vertex may not be finite; the box is
+  /// then undefined.
   bool Find(std::span<const glm::uvec3> corners, Box& box) {
     const DF d;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -180,7 +180,7 @@ class CellFinder {
  public:
   CellFinder(const glm::vec3* positions, const CellMap& map) : positions_(&positions->x), map_(map) {}
 
-  /// Cells of a vector of triangles.
+  /// Finds the cells of a vector of triangles.
   HWY_INLINE hn::Vec<DU> Find(const std::uint32_t* corners) {
     hn::Vec<DU> a, b, c;
     hn::LoadInterleaved3(DU(), corners, a, b, c);

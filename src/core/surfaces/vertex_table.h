@@ -17,20 +17,21 @@ constexpr std::size_t padded_to_lanes(std::size_t count) {
   return (count + Cluster::lanes - 1) / Cluster::lanes * Cluster::lanes;
 }
 
-/// The identity of a vertex. Vertices of two instances stay two if they coincide, and so do vertices of one instance
-/// that a transform flattens, so that each can follow its instance.
+/// The identity of a vertex. Vertices of two instances remain two vertices if they coincide, and so do vertices of one
+/// instance that its transform flattens to one place, because each vertex must follow its instance when it moves.
 struct VertexKey {
   glm::vec3 position;  ///< in the space of the mesh
   std::uint32_t instance = 0;
 };
 
-/// The vertices of one cluster after the other. Vertices are identified by the bits of their position, not by number,
-/// which suits both indexed meshes and soups. In a soup, such as an STL file, every triangle has vertex numbers of its
-/// own, and welding doubles the triangles that a cluster holds.
+/// A table of the vertices of one cluster, used for one cluster after the other. Vertices are identified by the bits of
+/// their position, not by number, which suits both indexed meshes and soups. In a soup, such as an STL file, every
+/// triangle has vertex numbers of its own, and welding doubles the triangles that a cluster holds.
 ///
-/// A hash of the position leads to a guess, which is compared. The guesses are never cleared, and one may overwrite
-/// another: a vertex is then stored twice, which costs a place and changes no picture. In return the table neither
-/// searches nor branches: a branch on whether a vertex is new is unpredictable, and would cost more than all the rest.
+/// The hash of a vertex leads to a guess, the number of a vertex that is then compared. Guesses are never cleared, and
+/// a guess may be overwritten by another vertex with the same hash. The former vertex is then stored twice if it
+/// returns, which takes room and changes no picture. In return the table neither searches nor branches: a branch on
+/// whether a vertex is new is unpredictable, and would cost more than all the rest.
 class VertexTable {
  public:
   static constexpr std::uint8_t none = 0xFF;
@@ -38,13 +39,13 @@ class VertexTable {
   void clear() { count_ = 0; }
   [[nodiscard]] std::size_t size() const { return count_; }
 
-  /// The vertex's number, or `none` if intern() would add it.
+  /// The number of a vertex, or `none` if intern() would add the vertex.
   [[nodiscard]] std::uint8_t find(const VertexKey& key) const {
     const Bits bits = bits_of(key);
     const std::uint8_t guess = guesses_[hash(bits)];
     return is_at(guess, bits) ? guess : none;
   }
-  /// The vertex's number; adds the vertex if it is not found. Precondition: there is room for one more.
+  /// The number of a vertex; adds the vertex if it is not found. Precondition: there is room for one more.
   std::uint8_t intern(const VertexKey& key, const glm::vec3& p) {
     const Bits bits = bits_of(key);
     std::uint8_t& guess = guesses_[hash(bits)];

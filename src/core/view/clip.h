@@ -9,7 +9,8 @@
 //   - - - - - - - - - - - - - - - - - - - -
 //
 // So only two kinds of triangles are clipped, and both are rare: those that reach over the guard band, and those that
-// cross the near or the far plane. Behind the eye the divide by the distance would turn them inside out.
+// cross the near or the far plane. Without clipping, the divide by the distance would turn triangles that reach behind
+// the eye inside out.
 #pragma once
 
 #include <array>

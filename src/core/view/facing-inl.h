@@ -43,7 +43,7 @@ HWY_INLINE hn::Mask<D> Kept(D d, const FacingRule& rule, hn::Mask<D> front, hn::
     case Culling::both: break;
     case Culling::material: return hn::Or(front, DoubleSided(d, rule, back, ids()));
   }
-  return hn::And(front, back);  // none
+  return hn::And(front, back);  // no lane, because no triangle is seen from both sides
 }
 
 }  // namespace HWY_NAMESPACE

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles a view culls by their facing, for all methods.
+// Which triangles all methods cull because of the side that a view sees.
 #pragma once
 
 #include "frontmost/view.h"
@@ -10,7 +10,7 @@ namespace frontmost {
 /// View::culling, applied to the triangles of a scene.
 class FacingRule {
  public:
-  /// Borrows `sides`. Null means that all triangles are one-sided; a set without triangles has no sides.
+  /// Borrows `sides`. Null, as without triangles, means that all triangles are one-sided.
   FacingRule(Culling culling, const MaterialSides* sides) : culling_(culling) {
     if (culling != Culling::material) return;
     if (sides && !sides->bits.empty())
@@ -19,7 +19,7 @@ class FacingRule {
       culling_ = sides && sides->are_all_double ? Culling::none : Culling::back;
   }
 
-  /// Culling::material only if materials of both kinds occur.
+  /// The culling that applies; Culling::material only if one-sided and double-sided materials both occur.
   [[nodiscard]] Culling culling() const { return culling_; }
   /// Whether a triangle that is seen from this side is kept.
   [[nodiscard]] bool keeps(PrimitiveId id, bool is_front) const {

@@ -26,7 +26,7 @@ using namespace frontmost::HWY_NAMESPACE;
 struct KeyPlanes {
   VI x0, y0;  ///< the topmost vertex
   VF k0, gx, gy, k_min, k_max;
-  MI steep;  ///< drawn one by one, see SteepKeys
+  MI steep;  ///< steep triangles, which are drawn one by one; see SteepKeys
 };
 
 /// The sides of triangles from vertex 0 to vertex 1, and from vertex 2 to vertex 0.
@@ -70,8 +70,8 @@ HWY_INLINE KeyPlanes KeyPlanesOf(const VI (&x)[3], const VI (&y)[3], const VF (&
   const TwoSides sides{hn::Sub(x[1], x[0]), hn::Sub(y[1], y[0]), hn::Sub(x[0], x[2]), hn::Sub(y[0], y[2])};
   KeyPlanes planes;
   FindGradients(sides, key, planes);
-  // The topmost vertex, or the left one of two at the same height. In reading order, the distance of vertices 1 and 2
-  // from vertex 0 fits 32 bits.
+  // Chooses the topmost vertex, or the left one of two at the same height. The distances of vertices 1 and 2 from
+  // vertex 0 in reading order fit into 32 bits.
   const VI zero = hn::Zero(DI());
   const VI to_1 = hn::Add(hn::ShiftLeft<16>(sides.y1), sides.x1);
   const VI to_2 = hn::Neg(hn::Add(hn::ShiftLeft<16>(sides.y2), sides.x2));

@@ -21,8 +21,8 @@ class ScreenRays {
   [[nodiscard]] bool is_parallel() const { return parallel_; }
   [[nodiscard]] const glm::dvec3& eye() const { return eye_; }
   [[nodiscard]] const glm::dvec3& forward() const { return forward_; }
-  /// Perspective: the direction of the ray through (x, y), not normalised, one unit along the viewing axis. Parallel
-  /// projection: the start of the ray, relative to the eye.
+  /// Perspective: the direction of the ray through (x, y), not normalised; its component along the viewing axis is 1.
+  /// Parallel projection: the start of the ray, relative to the eye.
   [[nodiscard]] glm::dvec3 at(double x, double y) const { return corner_ + x * step_x_ + y * step_y_; }
   [[nodiscard]] const glm::dvec3& step_x() const { return step_x_; }
   [[nodiscard]] const glm::dvec3& step_y() const { return step_y_; }

@@ -25,9 +25,9 @@ class ScreenCutout {
  public:
   /// Borrows the triangle.
   ScreenCutout(const CutoutTriangle& triangle, const ScreenRays& rays);
-  /// Whether the ray through a place on the screen, in 1/256 pixel from the image's top left, passes through a hole. A
-  /// place outside of the triangle counts roughly as the nearest place on its rim: snapping moves vertices by half of
-  /// that unit.
+  /// Whether the ray through a place on the screen, in 1/256 pixel from the image's top left, passes through a hole.
+  /// Snapping moves vertices by up to half of that unit, so the place may lie outside of the triangle; it then counts
+  /// roughly as the nearest place on the triangle's rim.
   [[nodiscard]] bool is_hole(std::int32_t x, std::int32_t y) const;
 
  private:

@@ -29,7 +29,8 @@ float dot(const std::array<float, 3>& row, const glm::dvec3& v) {
 
 ScreenTransform::ScreenTransform(const View& view) {
   const Projection& p = view.projection;
-  // 1/256 pixels per unit of the image plane, and where the axis meets the plane, from the image's centre.
+  // Scales, in 1/256 pixel per unit of the image plane, and the point where the axis meets the plane, from the image's
+  // centre.
   const double scale_x = view.width / (p.right - p.left) * kSubPixels;
   const double scale_y = view.height / (p.top - p.bottom) * kSubPixels;
   const double axis_x = -p.left * scale_x - 0.5 * view.width * kSubPixels;
@@ -42,8 +43,8 @@ ScreenTransform::ScreenTransform(const View& view) {
   x_row = as_row(scale_x * view.right() + per_distance * axis_x * view.forward());
   y_row = as_row(-scale_y * view.up() + per_distance * axis_y * view.forward());
   d_row = as_row(view.forward());
-  // Floats subtract the rounded eye. The rest, at most half a unit in the last place, goes through the rows once, in
-  // doubles.
+  // Floats subtract the rounded eye from a position. The rest of the eye, at most half a unit in the last place, is
+  // multiplied by the rows once, in doubles.
   const glm::dvec3 rest = view.eye() - glm::dvec3(eye[0], eye[1], eye[2]);
   x_offset = float((1 - per_distance) * axis_x) - dot(x_row, rest);
   y_offset = float((1 - per_distance) * axis_y) - dot(y_row, rest);
@@ -112,11 +113,12 @@ ClipVertex cut(const ScreenTransform& t, ClipPlane plane, const ClipVertex& insi
   return v;
 }
 
-/// Each of six planes adds at most one corner to a convex polygon, and one more is written before it is tested.
+/// Each of six planes adds at most one corner to a convex polygon, and one more corner is written before the count is
+/// tested.
 using ClipCorners = std::array<ClipVertex, ClippedPolygon::max_corners + 1>;
 
-/// Vertices that are all outside of a plane have nothing inside between them. Cuts at earlier planes would be rounded,
-/// by much if vertices are 1e20 times as far away as others, and could land in the picture.
+/// Whether all vertices are outside of one plane, so that nothing between them is inside. Cutting at earlier planes
+/// would be rounded, by much if some vertices are 1e20 times as far away as others, and cuts could land in the picture.
 bool is_outside(const ScreenTransform& t, const ClipCorners& triangle) {
   const auto all_outside = [&](ClipPlane plane) {
     return std::all_of(triangle.begin(), triangle.begin() + 3,
@@ -153,8 +155,8 @@ ScreenVertex finish(const ScreenTransform& t, const ClipVertex& v) {
   return {snap_coordinate(v.x, w), snap_coordinate(v.y, w), std::clamp(float(key), 0.0f, 1.0f)};
 }
 
-/// Rotates a polygon to its topmost corner. Fans begin at the first corner, which must not depend on the order of
-/// vertices: another order would otherwise give other pieces.
+/// Rotates a polygon so that its topmost corner comes first. Fans begin at the first corner, which must not depend on
+/// the order of vertices: another order would otherwise give other pieces.
 void begin_at_top(ClippedPolygon& polygon) {
   const auto end = polygon.corners.begin() + polygon.count;
   const auto top = std::min_element(polygon.corners.begin(), end, [](const ScreenVertex& a, const ScreenVertex& b) {

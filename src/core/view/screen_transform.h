@@ -4,8 +4,8 @@
 // With d = position - eye, the homogeneous screen position is X = x_row . d + x_offset, Y and D likewise, and W = D
 // (perspective) or 1 (parallel). X / W is in 1/256 pixel from the centre of the image, x right, y down; D is the planar
 // distance. Rows and offsets are floats, evaluated as ((a*dx + b*dy) + c*dz) + offset without fused operations, so that
-// scalar code and every kernel give the same bits. The offsets hold the part of the eye that a float cannot hold: far
-// from the origin only the model's own rounding remains.
+// scalar code and every kernel give the same bits. The offsets contain the part of the eye's position that floats lose,
+// so far from the origin only the model's own rounding remains.
 #pragma once
 
 #include <array>
@@ -56,7 +56,7 @@ inline HomogeneousVertex transform(const ScreenTransform& t, const glm::vec3& po
 /// True if the vertex lies between near and far and within the guard band, so that it can be snapped as it is. False
 /// for NaN.
 inline bool is_plain(const ScreenTransform& t, const HomogeneousVertex& v) {
-  // Far away the product overflows, and infinity must not count as within infinity.
+  // Far away the product overflows. Without the limit, an infinite coordinate would count as within an infinite reach.
   const float reach = std::fmin(float(kGuardBand) * (t.orthographic ? 1.0f : v.d), std::numeric_limits<float>::max());
   return v.d >= t.near && v.d <= t.far && std::abs(v.x) <= reach && std::abs(v.y) <= reach;
 }

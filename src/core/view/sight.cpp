@@ -44,8 +44,8 @@ Sight::EyePlane Sight::plane_through(const glm::dvec3& p, const glm::dvec3& q) c
   return plane;
 }
 
-/// Vectors start at p, so points near p and q have a small bound, however far away the eye is. Vectors from the eye to
-/// all three points would leave every seventh sign of a finely divided sphere open.
+/// Vectors start at p, so the error bound is small for points near p and q, however far away the eye is. With vectors
+/// from the eye to all three points, every seventh sign of a finely divided sphere would stay open.
 Signed Sight::EyePlane::turn(const glm::dvec3& x, double slack) const {
   const Signed against = with_certain_sign(normal_, x - p_, slack, [&] {
     const Leg along = sight_->is_parallel_ ? Leg{sight_->forward_} : Leg{p_, sight_->eye_};

@@ -9,7 +9,8 @@
 //                      q
 //
 // Both signs together decide what hides what, and both are signs of determinants of the stored coordinates: nothing is
-// projected, so nothing is rounded. Values beside the signs are rounded; they tell where something is, never whether.
+// projected, so nothing is rounded. The values that come with the signs are rounded; they tell where something is,
+// never whether it is seen.
 #pragma once
 
 #include "base/exact_vector.h"
@@ -24,7 +25,7 @@ struct Signed {
 };
 [[nodiscard]] inline Signed with_sign_of_value(double value) { return {value, value > 0 ? 1 : value < 0 ? -1 : 0}; }
 
-/// Planes that contain lines of sight, and places of points on the screen.
+/// Makes planes that contain lines of sight, and finds the places of points on the screen.
 class Sight {
  public:
   /// Precondition: validate(view) passes.
@@ -33,8 +34,8 @@ class Sight {
   /// The plane through the eye (parallel projection: along the view) and two points.
   class EyePlane {
    public:
-    /// Positive if p, q and x turn left as seen from the eye. `slack` bounds the error of each coordinate of x. If it
-    /// is above 0, the sign is 0 if slack or rounding leaves it open.
+    /// Positive if p, q and x turn left as seen from the eye. `slack` bounds the error of each coordinate of x. If
+    /// `slack` is above 0, the sign is 0 where slack or rounding leaves it open.
     [[nodiscard]] Signed turn(const glm::dvec3& x, double slack = 0) const;
 
    private:
@@ -52,9 +53,11 @@ class Sight {
 
   /// The position in eye space, with the planar distance in place of z.
   [[nodiscard]] glm::dvec3 in_eye(const glm::dvec3& position) const;
-  /// x and y in pixels, z is the planar distance. Precondition in perspective: not in the plane of the eye.
+  /// \returns x and y in pixels, and the planar distance as z. Precondition in perspective: the point is not in the
+  /// plane of the eye.
   [[nodiscard]] glm::dvec3 to_screen(const glm::dvec3& in_eye) const;
-  /// The weight on the screen of a point a share t of the way between two points of eye space.
+  /// The weight, for interpolation on the screen, of the point that lies a share t of the way between two points of eye
+  /// space.
   [[nodiscard]] double to_weight(const glm::dvec3& from, const glm::dvec3& to, double t) const {
     return is_parallel_ ? 1 : from.z + (to.z - from.z) * t;
   }

@@ -63,7 +63,7 @@ HWY_INLINE hn::Mask<SnapF> IsPlain(const ScreenTransform& t, const HomogeneousVe
   return hn::And(between, hn::And(hn::Le(hn::Abs(v.x), reach), hn::Le(hn::Abs(v.y), reach)));
 }
 
-/// Valid in lanes of IsPlain().
+/// Snaps vertices. The results are valid only in the lanes of IsPlain().
 HWY_INLINE ScreenVertices Snap(const ScreenTransform& t, const HomogeneousVertices& v) {
   const SnapF d;
   const auto one = hn::Set(d, 1.0f);

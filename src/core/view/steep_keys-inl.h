@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The keys of steep triangles (triangle_keys.h) for a vector of samples at a time, with the same bits.
 //
-// Along a row only x changes, and along a column only y. Each product with one of them is computed once for a column
-// (Set) or once for a row (At); a sample needs only two subtractions and one sum of products.
+// Along a row only x changes, and along a column only y. Each product with x is computed once for a column (Set), and
+// each product with y once for a row (At). A sample then needs only two subtractions and one sum of products.
 
 // Included once for every target.
 #if defined(FRONTMOST_VIEW_STEEP_KEYS_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -25,10 +25,10 @@ using namespace frontmost::HWY_NAMESPACE;
 using KeyD = hn::ScalableTag<double>;
 using KeyF = hn::Rebind<float, KeyD>;
 
-/// Keys at a column's samples, row after row: terms that depend on x are computed once.
+/// Keys at the samples of a column, row after row. Terms that depend on x are computed once.
 class SteepColumn {
  public:
-  /// `x` from the origin of the vertices, in 1/256 pixel.
+  /// `x` is counted from the origin of the vertices, in 1/256 pixel.
   HWY_INLINE void Set(const SteepKeys& keys, hn::Vec<KeyD> x) {
     const auto dx = hn::Sub(x, hn::Set(KeyD(), keys.x0));
     q_ = hn::Mul(hn::Set(KeyD(), keys.qy), dx);

@@ -26,7 +26,7 @@ template <class Triangle>
 /// The key of a triangle that is not steep, as a plane: the key at (x, y) is (k0 + (x - x0) * gx) + (y - y0) * gy,
 /// limited to [k_min, k_max].
 struct KeyPlane {
-  /// Smaller keys are left to doubles: products with them might not be normal floats.
+  /// Triangles with smaller keys count as steep, because float products with such keys might not be normal numbers.
   static constexpr float least_key = 1e-30f;
 
   std::int32_t x0, y0;
@@ -41,8 +41,8 @@ struct KeyPlane {
     x0 = t.x[a], y0 = t.y[a], k0 = t.key[a];
     const double x1 = t.x[1] - t.x[0], y1 = t.y[1] - t.y[0], x2 = t.x[2] - t.x[0], y2 = t.y[2] - t.y[0];
     const double k1 = double(t.key[1]) - double(t.key[0]), k2 = double(t.key[2]) - double(t.key[0]);
-    // Keys of a triangle that is not steep are within a factor of 3, so their differences have 26 bits, and those of
-    // vertices 23: the sums of products are exact, and the same from any vertex.
+    // Keys of a triangle that is not steep are within a factor of 3, so differences of keys have 26 bits; differences
+    // of vertices have 23. The sums of products are therefore exact, and the same from any vertex.
     const double scale = 1 / double(doubled_area(t));
     gx = float((k1 * y2 - k2 * y1) * scale);
     gy = float((x1 * k2 - x2 * k1) * scale);
@@ -63,9 +63,9 @@ struct KeyPlane {
 /// The keys of a steep triangle: rounded once, from doubles.
 struct SteepKeys {
   double x0, y0, k0;  ///< the farthest vertex
-  double px, py;      ///< the side from there to the next vertex
-  double qx, qy;      ///< the side to there from the last vertex
-  double a, b;        ///< keys of the two other vertices, less k0, over the area
+  double px, py;      ///< the side from this vertex to the next one
+  double qx, qy;      ///< the side from the last vertex to this one
+  double a, b;        ///< keys of the two other vertices, less k0, divided by the area
   float k_min, k_max;
 
   SteepKeys() = default;
@@ -84,7 +84,7 @@ struct SteepKeys {
     k_max = std::max(t.key[p], t.key[q]);
   }
 
-  /// Limited to the range of the vertices' keys, which matters only outside of the triangle.
+  /// \returns the key, limited to the range of the vertices' keys; the limits matter only outside of the triangle.
   [[nodiscard]] float at(std::int32_t x, std::int32_t y) const {
     return std::min(std::max(float(exactly_at(x, y)), k_min), k_max);
   }

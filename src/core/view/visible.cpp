@@ -31,7 +31,7 @@ bool same_projection(const Projection& a, const Projection& b) {
 }
 
 bool same_view(const View& a, const View& b) {
-  // To the bit: keys of views that differ in the last place cannot be compared.
+  // Compared to the bit, because keys of views that differ in the last place cannot be compared.
   return a.width == b.width && a.height == b.height && a.samples == b.samples && a.world_from_eye == b.world_from_eye &&
          a.culling == b.culling && same_projection(a.projection, b.projection);
 }
@@ -63,7 +63,7 @@ std::uint64_t merge_run(Visible& into, const Visible& other, PrimitiveId first_i
 void check_planes(const Visible& visible, const char* who) {
   const std::size_t count = visible.view.sample_count();
   if (visible.primitives.size() != count || visible.keys.size() != count)
-    throw Error(ErrorCode::bad_argument, std::string(who), "the planes do not have the size of their view");
+    throw Error(ErrorCode::bad_argument, std::string(who), "the arrays do not match the size of their view");
 }
 
 void check_ids(std::span<const PrimitiveId> ids, std::uint32_t primitive_count, const char* who,
@@ -71,7 +71,7 @@ void check_ids(std::span<const PrimitiveId> ids, std::uint32_t primitive_count, 
   std::atomic<bool> is_of_others{false};
   constexpr std::size_t ids_at_once = 1u << 17;
   parallel_for(execution, ids.size(), ids_at_once, [&](std::size_t begin, std::size_t end) {
-    // One more than each id, so that no_primitive becomes the least: one maximum suffices, without a branch.
+    // Each id is compared plus one, so that no_primitive becomes the least: one maximum suffices, without a branch.
     std::uint32_t most = 0;
     for (std::size_t i = begin; i < end; ++i) most = std::max(most, ids[i] + 1);
     if (most > primitive_count) is_of_others = true;
@@ -107,7 +107,7 @@ std::uint64_t content_hash(const Visible& visible) {
   hash_word(hash, std::uint64_t(visible.view.samples));
   for (std::size_t i = 0; i < visible.keys.size(); ++i) {
     std::uint32_t key;
-    // The bits, not the number: two pictures are equal only to the last bit.
+    // The bits are hashed, not the number: two pictures are equal only if all bits are.
     std::memcpy(&key, &visible.keys[i], sizeof key);
     hash_word(hash, std::uint64_t(key) << 32 | visible.primitives[i]);
   }
@@ -125,7 +125,8 @@ void merge(Visible& into, const Visible& other, PrimitiveId first_id, const Exec
     throw Error(ErrorCode::bad_argument, "merge", "the two views are not the same");
   check_planes(into, "merge");
   check_planes(other, "merge");
-  // Tested once a run instead of at every sample: an error is rare, and the merged samples are lost then anyway.
+  // Whether ids run out is tested once a run instead of at every sample. An error is rare, and the merged samples are
+  // lost then anyway.
   std::atomic<bool> is_full{false};
   constexpr std::size_t samples_at_once = 1u << 16;
   parallel_for(execution, into.keys.size(), samples_at_once, [&](std::size_t begin, std::size_t end) {
@@ -182,7 +183,7 @@ bool is_mixed(const Visible& visible, int x, int y) {
   return false;
 }
 
-/// Whether every run finds the samples of its mixed pixels within `others`, and no mixed pixel lies beside the picture.
+/// Whether the samples of all mixed pixels lie within `others`, and no mixed pixel lies outside of the picture.
 bool has_all_others(const VisiblePixels& pixels) {
   const int width = pixels.view.width, across = int(pixels.runs_across());
   const std::size_t each = std::size_t(pixels.view.samples - 1);
@@ -240,9 +241,9 @@ void check_answer(const VisiblePixels& pixels, std::uint32_t primitive_count, co
   const std::size_t runs = pixels.runs_across() * std::size_t(view.height);
   if (view.width != first.width || view.height != first.height || first.samples != 1 || pixels.mixed.size() != runs ||
       pixels.places.size() != runs || pixels.others.size() < pixels.other_count)
-    throw Error(ErrorCode::bad_argument, std::string(who), "the planes do not have the size of their view");
+    throw Error(ErrorCode::bad_argument, std::string(who), "the arrays do not match the size of their view");
   if (!has_all_others(pixels))
-    throw Error(ErrorCode::bad_argument, std::string(who), "mixed pixels lie beyond the planes");
+    throw Error(ErrorCode::bad_argument, std::string(who), "a mixed pixel lies outside the picture or lacks samples");
   check_ids({pixels.others.data(), pixels.other_count}, primitive_count, who, execution);
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stands for formats whose library this build lacks. CMake defines FRONTMOST_NO_<FORMAT> for each of them.
+// Replaces the code of formats whose library this build lacks. CMake defines FRONTMOST_NO_<FORMAT> for each such
+// format.
 #include "io/images/formats.h"
 #include "io/models/reader.h"
 #if defined(FRONTMOST_NO_DRACO) || defined(FRONTMOST_NO_MESHOPT)

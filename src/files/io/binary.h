@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers as bytes of binary files: read in either byte order at any alignment, written in little-endian order.
+// Reads numbers from the bytes of binary files, in either byte order and at any alignment, and writes them in
+// little-endian order.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +18,7 @@ enum class Endian : std::uint8_t { little, big };
 
 inline constexpr Endian native_endian = std::endian::native == std::endian::little ? Endian::little : Endian::big;
 
-/// The value whose bytes start at `from`.
+/// Returns the value whose bytes start at `from`.
 template <class T>
 [[nodiscard]] T read_value(const std::byte* from, Endian endian) {
   std::byte bytes[sizeof(T)];
@@ -47,7 +48,7 @@ inline void append_bytes(std::string& bytes, double value) {
   append_bytes(bytes, std::uint32_t(word >> 32));
 }
 
-/// One number of a column.
+/// Appends one number of a column.
 inline void append_bytes(std::string& bytes, const TableColumn& column, std::size_t row) {
   if (const auto* small = std::get_if<std::vector<std::uint8_t>>(&column.values))
     bytes += char((*small)[row]);
@@ -62,9 +63,9 @@ class FileBytes {
  public:
   explicit FileBytes(OutputFile& file) : file_(file) {}
 
-  /// The bytes collected so far; callers may append.
+  /// Returns the bytes that are not written yet. Callers may append to them.
   [[nodiscard]] std::string& bytes() { return bytes_; }
-  /// Writes the collected bytes if there are enough of them. Call after each piece.
+  /// Writes the collected bytes if there are enough of them. To be called after each piece.
   void pass_on() {
     if (bytes_.size() >= bytes_at_once) finish();
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole file in memory is mapped if that pays off, else read, with a limit that is checked before memory is
+// A whole file is mapped into memory if that pays off, else read. The limit on its size is checked before memory is
 // allocated.
 #include "io/input_file.h"
 
@@ -37,7 +37,7 @@ struct ::stat status_of(int descriptor, const std::string& name) {
   return status;
 }
 
-/// Reads up to `count` bytes; an interrupting signal is no error. \returns how many there were: 0 only at the end.
+/// Reads up to `count` bytes; an interrupting signal is no error. \returns the number of bytes read: 0 only at the end.
 std::size_t read_some(int descriptor, std::byte* to, std::size_t count, const std::string& name) {
   for (;;) {
     const ssize_t got = ::read(descriptor, to, count);

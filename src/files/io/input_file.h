@@ -13,13 +13,13 @@
 
 namespace frontmost {
 
-/// Greatest size of a file, and of a stream (standard input, pipes), which must be held in memory.
+/// Greatest size of a file, and of a stream (standard input or a pipe), which cannot be mapped and fills memory.
 inline constexpr std::uint64_t max_file_bytes = std::uint64_t(1) << 40;
 inline constexpr std::uint64_t max_stream_bytes = std::uint64_t(1) << 34;
 /// Greatest number of bytes that are read from a device, for example a terminal: /dev/zero never ends.
 inline constexpr std::uint64_t max_device_bytes = std::uint64_t(1) << 26;
 
-/// The bytes of one file, read only; valid during the object's lifetime.
+/// The bytes of one file. They can be read during the object's lifetime, and not changed.
 ///
 /// Ordinary files are mapped, so that the system loads and drops their pages as readers pass over them. A mapped file
 /// that another program cuts short during reading ends the process. Files below `mapping_threshold`, which include most
@@ -28,7 +28,7 @@ class InputFile {
  public:
   static constexpr std::uint64_t mapping_threshold = 1 << 16;
 
-  /// `name` stands for the file in messages. \throws Error file_unreadable or limit_exceeded.
+  /// Opens `path`. `name` stands for the file in messages. \throws Error file_unreadable or limit_exceeded.
   static InputFile open(const std::filesystem::path& path, const std::string& name,
                         std::uint64_t max_bytes = max_file_bytes);
   /// Opens a path that a user gave: "-" is standard input. Otherwise like open().
@@ -58,17 +58,18 @@ class InputFile {
 /// memory, and a file cut short by another program causes an early end instead of a signal.
 class ByteStream {
  public:
-  /// "-" is standard input. `name` stands for the file in messages. \throws Error file_unreadable.
+  /// Opens `path`. The path "-" stands for standard input. Messages call the file `name`. \throws Error
+  /// file_unreadable.
   ByteStream(const std::string& path, std::string name);
   ~ByteStream();
   ByteStream(const ByteStream&) = delete;
   ByteStream& operator=(const ByteStream&) = delete;
 
-  /// Fills `to` with the next `count` bytes. \returns how many there were; fewer only at the end.
-  /// \throws Error file_unreadable.
+  /// Fills `to` with the next `count` bytes. \returns the number of bytes read, which is less than `count` only at the
+  /// end. \throws Error file_unreadable.
   std::size_t read(std::byte* to, std::size_t count);
 
-  /// The size of an ordinary file; empty for a pipe or a terminal.
+  /// Returns the size of an ordinary file, or nothing for a pipe or a terminal.
   [[nodiscard]] std::optional<std::uint64_t> size() const { return size_; }
   [[nodiscard]] bool can_rewind() const { return size_.has_value(); }
   /// Moves to `offset`, from which the next byte is read. Precondition: can_rewind().
@@ -81,13 +82,13 @@ class ByteStream {
   std::optional<std::uint64_t> size_;
 };
 
-/// The name of an input in messages: its path, or "standard input" for "-".
+/// Returns the name of an input in messages: its path, or "standard input" for "-".
 [[nodiscard]] std::string input_name(const std::string& path);
 
-/// The suffix of a file's name, in lower case, with its point.
+/// Returns the suffix of a file's name, in lower case and with its point.
 [[nodiscard]] std::string lower_suffix(const std::string& path);
 
-/// Bytes as text, without a UTF-8 byte order mark at their start. All readers of text call this function.
+/// Returns bytes as text, without a UTF-8 byte order mark at their start. All readers of text call this function.
 [[nodiscard]] std::string_view text_of(std::span<const std::byte> bytes);
 
 /// \throws Error file_unreadable: "name: reason".

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// All lists of a view as one block of data, their counts, and layers: at every sample the nearest primitive, the
-// second, and so on.
+// Returns all fragment lists of a view as one block of data, counts fragments, and finds layers: at every sample the
+// nearest primitive, the second nearest, and so on.
 //
-// Tiles finish in any order, and the lengths of their lists are not known before. So the lists of each tile are kept as
-// they are made. The running sum of their lengths then gives the beginnings of all pixels' lists, and all threads copy
-// the parts to their places.
+// Tiles finish in any order, and the lengths of their lists are not known beforehand. So the lists of each tile are
+// kept as they are made. The running sum of all lengths then gives the beginning of each pixel's list, and all threads
+// copy the lists to their places.
 
 #include "frontmost/abuffer.h"
 
@@ -46,7 +46,8 @@ class SampleLists {
       // At a single sample the order is that of the lists.
       if (pattern_.count == 1 && seen_.size() == most_) return seen_;
     }
-    // Lists are sorted by the key at one place of the pixel; triangles that cross change places at other samples.
+    // Lists are sorted by the key at the pixel's centre. Triangles that cross in the pixel have another order at some
+    // samples.
     if (pattern_.count > 1)
       std::sort(seen_.begin(), seen_.end(),
                 [](const SeenSample& a, const SeenSample& b) { return a.key != b.key ? a.key > b.key : a.id < b.id; });
@@ -97,11 +98,11 @@ FragmentCounts count_fragments(const Surfaces& surfaces, const View& view, const
 std::vector<Visible> visible_layers(const Surfaces& surfaces, const View& view, int count,
                                     const AbufferOptions& options, const Execution& execution) {
   if (count < 1 || count > 1024) throw Error(ErrorCode::bad_argument, "abuffer: layers", "must be 1 to 1024");
-  // Layers are Visibles with the view's samples, and cannot hold a grid of the A-buffer's own.
+  // Layers are Visibles, which have the view's samples, so the options' grid is left out.
   const PreparedFrame frame(surfaces, view, {0, options.opacity}, execution);
   const Opacities opacities(surfaces, options.opacity, execution);
   CopyRule copies = copy_rule(opacities);
-  // A coincident triangle with `count` copies before it everywhere is in no layer.
+  // A triangle behind `count` coincident copies is in no layer.
   copies.most = std::size_t(count);
   std::vector<Visible> layers;
   for (int k = 0; k < count; ++k) layers.push_back(nothing_visible(view));

@@ -31,12 +31,12 @@ std::uint64_t most_gathered_fragments(const View& view, std::uint64_t triangles)
 
 namespace {
 
-/// Pixels. Copies of smaller triangles are drawn in the time that it takes to find them.
+/// In pixels. Smaller triangles are drawn as quickly as their copies are found, so their copies are not looked for.
 constexpr double kLeastArea = 16;
 
 using PixelPolygon = std::vector<glm::dvec2>;
 
-/// The part of a convex polygon where sign * p[axis] <= bound.
+/// Returns the part of a convex polygon where sign * p[axis] <= bound.
 PixelPolygon cut_off(const PixelPolygon& polygon, int axis, double sign, double bound) {
   PixelPolygon part;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -49,7 +49,7 @@ PixelPolygon cut_off(const PixelPolygon& polygon, int axis, double sign, double 
   return part;
 }
 
-/// Area of the part within the picture, in pixels.
+/// Returns the area of the triangle within the picture, in pixels.
 double area_in_picture(const ScreenTriangle& t, const View& view) {
   const double width = view.width * kSubPixels, height = view.height * kSubPixels;
   const auto [x_min, x_max] = std::minmax({t.x[0], t.x[1], t.x[2]});
@@ -68,7 +68,7 @@ double area_in_picture(const ScreenTriangle& t, const View& view) {
   return std::abs(doubled) / unit;
 }
 
-/// A triangle's place, whichever of its vertices comes first.
+/// Positions and keys of a triangle's vertices, in an order that does not depend on which vertex comes first.
 using CornerPlaces = std::array<std::uint32_t, 9>;
 
 CornerPlaces place_of(const ScreenTriangle& t) {
@@ -104,7 +104,7 @@ class CopyFinder {
  public:
   CopyFinder(const FragmentPlan& plan, const CopyRule& rule) : plan_(plan), rule_(rule) {}
 
-  /// Finds the copies that nobody sees. Afterwards area() is the area of all others.
+  /// Finds the copies that nobody sees. Afterwards area() is the total area of all other triangles.
   std::vector<TriangleNumber> find() {
     std::vector<Candidate> candidates;
     plan_.for_each([&](const ScreenTriangle& t, const TriangleNumber& number) {
@@ -112,7 +112,7 @@ class CopyFinder {
       area_ += area;
       if (area >= kLeastArea) candidates.push_back({hash_of(place_of(t)), t.id, number});
     });
-    // Equal places are sorted by id: the lowest hide the others.
+    // Triangles at one place become neighbours, in the order of ids, because lower ids hide higher ones.
     std::sort(candidates.begin(), candidates.end(),
               [](const Candidate& a, const Candidate& b) { return a.hash != b.hash ? a.hash < b.hash : a.id < b.id; });
     for (std::size_t begin = 0, end; begin < candidates.size(); begin = end) {
@@ -124,7 +124,7 @@ class CopyFinder {
   [[nodiscard]] double area() const { return area_; }
 
  private:
-  /// Finds hidden copies in a group of the same hash, ids ascending.
+  /// Finds hidden copies in a group of triangles with the same hash, ids ascending.
   void look_at(std::span<const Candidate> group) {
     const CornerPlaces place = place_of(plan_.triangle(group.front().number));
     std::size_t kept = 0;
@@ -154,9 +154,9 @@ class CrowdedFrame {
  public:
   CrowdedFrame(const FragmentPlan& plan, const CopyRule& rule) : plan_(plan), rule_(rule) {}
 
-  /// The plan without invisible copies, which may be the plan itself. It is made at the first call, so frames without
-  /// such tiles pay nothing. May be called by several threads at once. O(n log n) for n triangles of the frame. \throws
-  /// Error limit_exceeded for more fragments than most_gathered_fragments().
+  /// Returns the plan without invisible copies, or the original plan if there are none. It is made at the first call,
+  /// so frames without crowded tiles pay nothing. May be called by several threads at once. O(n log n) for n triangles
+  /// of the frame. \throws Error limit_exceeded for more fragments than most_gathered_fragments().
   const FragmentPlan& thinned() {
     const std::lock_guard lock(mutex_);
     // Waiting threads get the first one's result or error.
@@ -195,7 +195,7 @@ class CrowdedFrame {
   std::exception_ptr error_;
 };
 
-/// The view, if it and the options are in range.
+/// Returns the view. \throws Error if the view or an option is out of range.
 const View& valid(const View& view, const AbufferOptions& options) {
   validate(view);
   if (!(options.opacity >= 0.0f && options.opacity <= 1.0f))
@@ -203,7 +203,7 @@ const View& valid(const View& view, const AbufferOptions& options) {
   return view;
 }
 
-/// The share of light that passes below the surface, before any tint.
+/// Returns the share of light that passes below the surface, before any tint.
 float limited_transmission(const Material& m) {
   if (m.unlit || !(m.transmission.factor > 0)) return 0;
   return std::min(m.transmission.factor, 1.0f) * (m.metallic > 0 ? 1 - std::min(m.metallic, 1.0f) : 1.0f);
@@ -225,7 +225,7 @@ class TileVisitor {
   /// Visits the rectangle, or its parts.
   void visit_in_parts(const GatherInput& frame, const GatherJob& job) {
     if (visit_whole(frame, job)) return;
-    // Parts are whole groups of pixels as long as there are groups.
+    // Parts consist of whole groups of 4 x 4 pixels, as long as the rectangle is larger than a group.
     const Rectangle& r = job.pixels;
     const auto half = [](int size) { return size > 4 ? (size / 2 + 3) / 4 * 4 : (size + 1) / 2; };
     const int w = half(r.width), h = half(r.height);
@@ -239,13 +239,13 @@ class TileVisitor {
   const PreparedFrame::Visit& visit_;
 };
 
-/// Far below the rounding of a sum of floats.
+/// A share of light that is far below the rounding of a sum of floats.
 constexpr float kNegligible = 0x1p-40f;
 
-/// Extracts the fragments that may be seen from sorted lists: fragments that are hidden in the whole pixel are left
-/// out. Which fragments hide depends on the opacities of materials alone, because colours are not known yet. A texture
-/// may still cut holes, so a blended material hides nothing. Clear fragments hide together, once only a negligible
-/// share passes through all of them.
+/// Extracts the fragments that may be seen from sorted lists, without the fragments that are hidden in the whole pixel.
+/// Colours are not known yet, so the opacities of materials alone decide what hides. A texture may still cut holes, so
+/// a blended material hides nothing. Clear fragments hide together, once only a negligible share of light passes
+/// through all of them.
 class Lister {
  public:
   Lister(const SamplePattern& pattern, const GatherScratch& scratch, const Opacities& opacities, float negligible)
@@ -275,15 +275,15 @@ class Lister {
   }
 
  private:
-  /// Whether nothing, or next to nothing, is seen behind a further fragment that covers the pixel. `passes` is the
-  /// share that all fragments before it let pass.
+  /// Adds a fragment that covers the pixel. Returns whether nothing, or next to nothing, is seen behind it. `passes` is
+  /// the share of light that passes all fragments so far.
   [[nodiscard]] bool hides_rest(PrimitiveId id, float& passes) const {
     passes *= 1 - opacities_.least(id);
     return opacities_.is_opaque(id) || passes < negligible_;
   }
   [[nodiscard]] PrimitiveId id_of(std::uint32_t number) const { return s_.triangles.id[s_.arrived.triangle[number]]; }
 
-  /// The key behind which nothing is seen anywhere in the pixel.
+  /// Returns the key behind which nothing is seen anywhere in the pixel.
   [[nodiscard]] float hidden_behind(const std::uint64_t* words, std::size_t length) const {
     // -1 hides nothing: keys of fragments are at least 0.
     float key = -1, passes = 1, farthest = std::numeric_limits<float>::infinity();
@@ -291,7 +291,7 @@ class Lister {
     for (std::size_t i = 0; i < length && words[i * kGroup] != 0; ++i) {
       const std::uint32_t number = ~std::uint32_t(words[i * kGroup]);
       if (s_.arrived.mask(number) != pattern_.full()) continue;
-      // Clear fragments hide only together, and so only what is behind all of them.
+      // Clear fragments hide only together, so they hide only fragments that are behind all of them.
       farthest = std::min(farthest, s_.farthest_of(number));
       if (hides_rest(id_of(number), passes))
         key = std::max(key, opacities_.is_opaque(id_of(number)) ? s_.farthest_of(number) : farthest);
@@ -319,7 +319,7 @@ class Lister {
   PixelLists lists_;
 };
 
-/// One channel of the colours, with its own alphas.
+/// Returns the colours for compositing one channel, with the alphas of this channel.
 std::vector<glm::vec4> channel_of(const FragmentColors& colors, int channel) {
   std::vector<glm::vec4> table = colors.straight;
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -369,8 +369,8 @@ Opacities::Opacities(const Surfaces& surfaces, float opacity, const Execution& e
     differ = differ || by_material.back() != opacity;
   }
   if (!differ) return;
-  // Most scenes have one opacity for all primitives and do not get here: a number for each primitive would be read for
-  // every fragment.
+  // Most scenes have one opacity for all primitives and return above. Otherwise every fragment would read a number of
+  // its primitive.
   values_.assign(surfaces.primitive_count(), opacity);
   parallel_for(execution, scene.instances.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -454,8 +454,8 @@ void FragmentPass::paint(const Paint& paint, const Receive& receive, const Leave
   const CompositeInput input{frame_.pattern(), opacity_, execution.isa};
   const auto visit = [&](const Rectangle& pixels, const GatherScratch* fragments) {
     if (!fragments) return receive(pixels, nullptr);
-    // Colours are indexed by number of arrival, as the compositor reads them; fragments that the lists leave out have
-    // no effect.
+    // Colours are indexed by the fragments' numbers in Arrived, as the compositor reads them. Fragments that the lists
+    // leave out have no effect.
     FragmentColors colors{std::vector<glm::vec4>(fragments->arrived.count, glm::vec4(0)), {}};
     paint(pixels, lists_of(pixels, *fragments, kNegligible), colors);
     const PaintedPixels painted = composite(input, pixels, *fragments, colors);

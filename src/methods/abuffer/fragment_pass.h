@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fragments for callers that colour them: this folder computes their order and coverage, the caller their colours.
+// Gives fragments to callers that colour them: this folder computes order and coverage, the caller computes colours.
 //
 //    first   list_primitives(): the triangles that must be prepared for shading
 //    then    look() or paint(): lists, tile by tile; paint() takes a colour for each fragment and returns pixels
 //
-// Every pass gathers tiles anew: keeping them would take as much memory as there are fragments, and a pixel may have
-// any number of fragments.
+// Every pass gathers tiles anew. Keeping them would take memory for all fragments, and a pixel may have any number of
+// fragments.
 #pragma once
 
 #include <algorithm>
@@ -18,36 +18,37 @@
 
 namespace frontmost::abuffer_detail {
 
-/// The number of copies to keep among triangles with the same vertices on the screen. At every sample their order is
-/// that of the ids.
+/// Says how many copies to keep. Copies are triangles with the same vertices on the screen; at every sample they are in
+/// the order of their ids.
 struct CopyRule {
-  /// Whether nothing is seen through the primitive anywhere, so that it hides copies of higher ids. Empty: true of
-  /// none.
+  /// Returns whether nothing is seen through the primitive anywhere, so that it hides its copies with higher ids. Empty
+  /// if no primitive is opaque.
   std::function<bool(PrimitiveId)> is_opaque;
-  std::size_t most = std::size_t(-1);  ///< never keep more than these, opaque or not
+  std::size_t most = std::size_t(-1);  ///< never keep more copies than this, opaque or not
 };
 
-/// The most fragments that a function goes through, as `most_fragments` says.
+/// Returns how many fragments a pass may have at most, as `most_fragments` says.
 [[nodiscard]] std::uint64_t most_gathered_fragments(const View& view, std::uint64_t triangles);
 
-/// How much each primitive hides of the background, by its material and before any texture. A material that can be seen
-/// through may be opaque where its texture says so, but nothing may be left out because of that.
+/// The opacity of each primitive: how much of the background its material hides, before any texture. A see-through
+/// material may be opaque where its texture says so, but the fragments behind it are kept nevertheless.
 class Opacities {
  public:
   Opacities(const Surfaces& surfaces, float opacity, const Execution& execution);
 
   [[nodiscard]] float of(PrimitiveId id) const { return values_.empty() ? all_ : std::abs(values_[id]); }
-  /// The least opacity of the primitive, whatever its texture says.
+  /// Returns the least opacity that the primitive may have, whatever its texture says.
   [[nodiscard]] float least(PrimitiveId id) const { return std::max(values_.empty() ? all_ : values_[id], 0.0f); }
-  /// Whether nothing is seen through the primitive, whatever its texture says.
+  /// Returns whether nothing is seen through the primitive, whatever its texture says.
   [[nodiscard]] bool is_opaque(PrimitiveId id) const { return (values_.empty() ? all_ : values_[id]) >= 1.0f; }
 
  private:
   float all_;
-  std::vector<float> values_;  // empty: all have all_. Negative: opacity 1, but a texture may cut holes
+  std::vector<float> values_;  // empty if all are all_; negated if the material is see-through, because its texture may
+                               // let more through
 };
 
-/// A rule that keeps, of coincident triangles, those up to the first opaque one. Refers to the opacities.
+/// Returns the rule that keeps coincident triangles up to the first opaque one. Refers to `opacities`.
 [[nodiscard]] inline CopyRule copy_rule(const Opacities& opacities) {
   return {[&opacities](PrimitiveId id) { return opacities.is_opaque(id); }};
 }
@@ -60,13 +61,13 @@ class PreparedFrame {
 
   [[nodiscard]] const SamplePattern& pattern() const { return pattern_; }
 
-  /// Takes a rectangle of the picture and its fragments; null if nothing is seen.
+  /// Receives a rectangle of the picture and its fragments, or null if nothing is seen in it.
   using Visit = std::function<void(const Rectangle& pixels, GatherScratch* fragments)>;
-  /// Whether a tile is to be skipped; null: no tile is.
+  /// Returns whether to skip a tile. If the function is empty, no tile is skipped.
   using LeaveOut = std::function<bool(const Rectangle& tile)>;
-  /// Calls `visit` for rectangles that make up the picture, in any order, from several threads at once: tiles that are
-  /// not left out, and, to bound memory, parts of tiles with too many fragments. `copies` says what may be left out of
-  /// such tiles. Fragments are in the order of arrival, and holes count as covered.
+  /// Calls `visit` for rectangles that make up the picture, in any order, from several threads at once. The rectangles
+  /// are the tiles that are not left out. To bound memory, tiles with too many fragments are divided, and lose the
+  /// copies that the rule `copies` does not keep. Fragments are in the order of arrival, and holes count as covered.
   void visit_tiles(const CopyRule& copies, const Visit& visit, const LeaveOut& leave_out,
                    const Execution& execution) const;
   /// visit_tiles() with fragments in sorted lists, without their holes.
@@ -85,8 +86,8 @@ struct PixelLists {
   std::vector<std::uint32_t> numbers;  ///< number of each fragment in Arrived
   const GatherScratch* scratch = nullptr;
 
-  /// The key of fragment i at a place in 1/256 pixel from the rectangle's corner, exactly as compared. Valid only until
-  /// the callback that was given the lists returns.
+  /// Returns the key of fragment i at a position in 1/256 pixel from the rectangle's corner, exactly as depths are
+  /// compared. Valid only until the callback that received the lists returns.
   [[nodiscard]] float key_at(std::size_t i, std::int32_t x, std::int32_t y) const {
     return scratch->triangles.key_at(scratch->arrived.triangle[numbers[i]], x, y);
   }
@@ -95,8 +96,8 @@ struct PixelLists {
 /// The colours of fragments, by their numbers in Arrived.
 struct FragmentColors {
   std::vector<glm::vec4> straight;  ///< linear, with straight alpha
-  /// Alphas by channel, whose mean is the alpha of `straight`: a tinted fragment hides more in one channel than in
-  /// another. Negative: the same in all channels. Empty: the same for all fragments.
+  /// Alphas of each channel for tinted fragments, which hide more in one channel than in another. Their mean is the
+  /// alpha of `straight`. Negative if the fragment is not tinted; empty if no fragment is tinted.
   std::vector<glm::vec3> alphas;
 
   void set(std::uint32_t number, const glm::vec3& color, float alpha, const glm::vec3& by_channel) {
@@ -129,30 +130,32 @@ class FragmentPass {
   /// Positions of the masks' bits in 1/256 pixel.
   [[nodiscard]] std::vector<glm::ivec2> samples() const { return frame_.pattern().positions(); }
 
-  /// Whether nothing is seen through the primitive, whatever its texture says.
+  /// Returns whether nothing is seen through the primitive, whatever its texture says.
   [[nodiscard]] bool is_opaque(PrimitiveId id) const { return opacities_.is_opaque(id); }
 
   using LeaveOut = PreparedFrame::LeaveOut;
-  /// The primitives in one part of the picture after another: all visible ones, some hidden ones, some several times.
-  /// Quicker than looking at their fragments.
+  /// Receives the primitives of one part of the picture after another: all visible ones, some hidden ones, and some
+  /// several times. This is quicker than looking at their fragments.
   using Note = std::function<void(std::span<const PrimitiveId> primitives)>;
   void list_primitives(const Note& note, const LeaveOut& leave_out, const Execution& execution) const;
 
-  /// Takes the lists without fragments that lie wholly behind opaque fragments covering the whole pixel.
+  /// Receives the lists of a rectangle, without the fragments that lie wholly behind an opaque fragment that covers the
+  /// pixel.
   using Look = std::function<void(const Rectangle& pixels, PixelLists lists)>;
   void look(const Look& look, const Execution& execution) const;
 
-  /// Sets the colour of number lists.numbers[i] for every fragment i. All other colours are 0: hidden fragments, and
-  /// fragments that add less than 1e-12 of themselves to their pixel because of fragments before them.
+  /// Sets the colour with the number lists.numbers[i] for every fragment i. Other colours stay 0: those of hidden
+  /// fragments, and those of fragments that add less than 1e-12 of their colour because of the fragments in front of
+  /// them.
   using Paint = std::function<void(const Rectangle& pixels, const PixelLists& lists, FragmentColors& colors)>;
-  /// Takes the finished pixels of the rectangle; null if nothing is seen.
+  /// Receives the finished pixels of a rectangle, or null if nothing is seen in it.
   using Receive = std::function<void(const Rectangle& pixels, const PaintedPixels* painted)>;
   /// Composites the colours; every alpha is multiplied by the options' opacity.
   void paint(const Paint& paint, const Receive& receive, const LeaveOut& leave_out, const Execution& execution) const;
 
  private:
-  /// Leaves out fragments wholly behind opaque fragments that cover the whole pixel, or behind fragments that cover it
-  /// and together let no more pass than `negligible`.
+  /// Returns the lists without the fragments that lie wholly behind an opaque fragment that covers the whole pixel, or
+  /// behind fragments that cover it and together let no more light pass than the share `negligible`.
   [[nodiscard]] PixelLists lists_of(const Rectangle& pixels, const GatherScratch& fragments, float negligible) const;
 
   float opacity_;

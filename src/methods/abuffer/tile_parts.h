@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From lists of tiles, which arrive in any order, to the lists of a picture, pixel by pixel in one array.
+// Joins the lists of tiles, which arrive in any order, into one array that holds the list of each pixel.
 //
 //    parts, as tiles end    [tile 5 | lists]  [tile 0 | lists]  [tile 2 | lists] ...
 //    first                  pixel 0: 0   pixel 1: 3   pixel 2: 3   ...   the running sum of all lengths
@@ -34,13 +34,13 @@ class TileParts {
   void add(TilePart<T> part) {
     const std::lock_guard lock(mutex_);
     item_count_ += part.items.size();
-    // The sum is known only here. The parts before this one are stored already, but each is bounded by the limit of a
-    // tile.
+    // The number of items is known only now. The parts before this one are stored already, but each is bounded by the
+    // limit of a tile.
     if (item_count_ > most_) throw Error(ErrorCode::limit_exceeded, place_, reason_);
     parts_.push_back(std::move(part));
   }
 
-  /// By pixel of the picture, the beginning of its list; then the end of the last list.
+  /// Returns the beginning of the list of each pixel of the picture, and then the end of the last list.
   [[nodiscard]] Buffer<std::uint64_t> beginnings() const {
     Buffer<std::uint64_t> first(view_.pixel_count() + 1, 0);
     for (const TilePart<T>& part : parts_)
@@ -49,7 +49,7 @@ class TileParts {
           const std::size_t at =
               std::size_t(part.pixels.y + y) * std::size_t(view_.width) + std::size_t(part.pixels.x + x);
           const std::size_t p = std::size_t(y) * std::size_t(part.pixels.width) + std::size_t(x);
-          // Lengths are stored one place further on, then summed: parts may come in any order.
+          // Lengths are stored one entry further on and summed later, because parts come in any order.
           first[at + 1] = part.begin[p + 1] - part.begin[p];
         }
     for (std::size_t i = 0; i < view_.pixel_count(); ++i) first[i + 1] += first[i];

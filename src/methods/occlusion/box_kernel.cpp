@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the cells that boxes reach, a vector of boxes at a time, and tests boxes against the cover.
 
 #include "occlusion/cells.h"
 
@@ -82,7 +83,7 @@ struct QuotientRange {
   VF least, greatest;
 };
 
-/// The least and greatest quotient over the corners, rounded outwards. Precondition: d is positive.
+/// Returns the least and greatest quotient over the corners, rounded outwards. Precondition: d is positive.
 HWY_INLINE QuotientRange Divided(const Terms& x, const VF (&inverse)[8], VF d_slack) {
   QuotientRange e{hn::Mul(x.AtCorner(0), inverse[0]), hn::Mul(x.AtCorner(0), inverse[0])};
   VF greatest_inverse = inverse[0];
@@ -98,7 +99,7 @@ HWY_INLINE QuotientRange Divided(const Terms& x, const VF (&inverse)[8], VF d_sl
   return {hn::Sub(e.least, off), hn::Add(e.greatest, off)};
 }
 
-/// A half-open range of cells, clamped to the screen. `centre` is the image's, in 1/256 pixel.
+/// A half-open range of cells, clamped to the screen. `centre` is the image's centre, in 1/256 pixel.
 struct CellSpan {
   VI first, end;
 };
@@ -124,7 +125,7 @@ class BoxProjector {
     sides_[3] = Side(t.y_row, t.y_offset, -y);
   }
 
-  /// Finds boxes [first, end), at most a vector of them.
+  /// Finds the boxes [first, end) on the screen, at most a vector of them.
   HWY_INLINE void Find(std::size_t first, std::size_t end) const {
     const DF d;
     const DI di;
@@ -154,7 +155,7 @@ class BoxProjector {
       across = Divided(x, inverse, depth.slack);
       down = Divided(y, inverse, depth.slack);
     }
-    // Nothing is known of boxes so far away that floats overflow.
+    // Boxes that reach before the near plane, or are so far away that floats overflow, may lie in any cell.
     const MF before_near = hn::Not(hn::Ge(nearest, hn::Set(d, t.near)));
     const MF known = hn::And(hn::Le(across.least, across.greatest), hn::Le(down.least, down.greatest));
     const CellSpan columns = CellsOf(grid_, across, t.centre_x, grid_.columns);
@@ -178,7 +179,7 @@ class BoxProjector {
   }
 
  private:
-  /// A function that is negative outside of the picture's side at `reach`: x + reach w, or -x + |reach| w.
+  /// Returns a function that is negative outside of the picture's side at `reach`: x + reach w, or -x + |reach| w.
   Linear Side(const std::array<float, 3>& row, float offset, float reach) const {
     const ScreenTransform& t = grid_.transform;
     const float sign = reach > 0 ? 1.0f : -1.0f, w = std::abs(reach) * 1.000001f + 256.0f;

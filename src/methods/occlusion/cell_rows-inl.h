@@ -22,7 +22,7 @@ using RowF = hn::CappedTag<float, tile_rows>;
 using RowI = hn::RebindToSigned<RowF>;
 using RowU = hn::RebindToUnsigned<RowF>;
 
-/// The lowest `count` bits, for counts of 0 to 32.
+/// Returns the lowest `count` bits, for counts of 0 to 32.
 HWY_INLINE hn::Vec<RowU> LowBits(hn::Vec<RowI> count) {
   const RowI d;
   const RowU du;
@@ -35,7 +35,8 @@ HWY_INLINE hn::Vec<RowU> LowBits(hn::Vec<RowI> count) {
 /// LowBits() of one count.
 inline std::uint32_t low_bits(int count) { return count >= 32 ? ~0u : (1u << count) - 1u; }
 
-/// The cells of a tile, which begins at (x, y), within a rectangle. Precondition: the rectangle reaches into the tile.
+/// The cells of a tile that lie within a rectangle. The tile begins at (x, y). Precondition: the rectangle reaches into
+/// the tile.
 struct CellsWithin {
   std::uint32_t columns;
   int first_row, end_row;
@@ -54,7 +55,8 @@ struct CellsWithin {
   }
 };
 
-/// Whether a tile that begins at (x, y) has all cells of a rectangle that reaches into it.
+/// Returns whether a tile, which begins at (x, y), has all of its cells that lie within a rectangle. Precondition:
+/// there are such cells.
 HWY_INLINE bool HasAll(const std::uint32_t* rows, const CellRect& rect, int x, int y) {
   const RowU d;
   const CellsWithin within(rect, x, y);
@@ -64,7 +66,7 @@ HWY_INLINE bool HasAll(const std::uint32_t* rows, const CellRect& rect, int x, i
   return hn::AllTrue(d, hn::Eq(missing, hn::Zero(d)));
 }
 
-/// Whether nearer triangles than `depth` cover all cells of a rectangle within the screen.
+/// Returns whether triangles nearer than `depth` cover all cells of a rectangle within the screen.
 HWY_INLINE bool IsCovered(const CellCover& cover, const CellRect& rect, float depth) {
   const RowF d;
   const auto wanted = hn::Set(d, depth);

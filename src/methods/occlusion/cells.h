@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cells of the screen: which of them are covered, the greatest distance of their cover, and the cells that boxes reach.
+// Cells of the screen: which of them are covered, how far away their cover is at most, and which cells boxes reach.
 //
 //    tile    32 x 16 cells, a bit each: row r of a tile is rows(tile)[r], its leftmost cell the lowest bit
 //    depth   of a tile: everything that covers one of its cells lies nearer
@@ -72,8 +72,8 @@ struct CellCover {
 struct CellGrid {
   ScreenTransform transform;
   int columns, rows;
-  float cells_per_unit;  ///< for 1/256 pixel
-  float margin;          ///< in cells: more than snapping and rounding move a vertex
+  float cells_per_unit;  ///< cells in 1/256 pixel
+  float margin;          ///< in cells; greater than the distance that snapping and rounding move a vertex
 
   CellGrid(const View& view, int cell)
       : transform(view),
@@ -83,7 +83,7 @@ struct CellGrid {
         margin(2.0f * cells_per_unit) {}
 };
 
-/// Consecutive numbers.
+/// Consecutive items, from `first` on.
 struct ItemRange {
   std::uint32_t first = 0, count = 0;
   [[nodiscard]] std::uint32_t end() const { return first + count; }
@@ -100,7 +100,7 @@ struct BoxColumns {
       high[axis].resize(count + most_lanes, -1.0f);
     }
   }
-  /// Precondition: empty or finite.
+  /// Precondition: the box is empty or finite.
   void set(std::size_t number, const Box& box) {
     const bool is_empty = box.is_empty();
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -117,7 +117,7 @@ struct BoxColumns {
 /// The place of a box on the screen.
 struct ScreenBox {
   CellRect rect;   ///< empty if the box is empty or outside of the viewing volume
-  float nearest;   ///< planar distance; -infinity if the box reaches before the near plane
+  float nearest;   ///< planar distance; -infinity if the box reaches nearer than the near plane
   float farthest;  ///< greatest planar distance
 };
 
@@ -125,11 +125,11 @@ struct ScreenBox {
 void find_on_screen(const CellGrid& grid, const BoxColumns& boxes, const ItemRange& which, std::vector<ScreenBox>& out,
                     Isa isa);
 
-/// Whether nearer triangles than a distance cover all cells of a rectangle within the screen.
+/// Returns whether triangles nearer than a distance cover all cells of a rectangle within the screen.
 using CoverTest = bool (*)(const CellCover& cover, const CellRect& rect, float distance);
 [[nodiscard]] CoverTest cover_test(Isa isa);
 
-/// The sights of boxes, one each.
+/// Stores the sight of each box.
 void find_sights_of(const CellCover& cover, std::span<const ScreenBox> boxes, ObjectSight* sights, Isa isa);
 
 }  // namespace frontmost::occlusion_detail

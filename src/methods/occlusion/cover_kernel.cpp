@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles and segments as rows of cells, several rows of a tile at a time.
+// Finds the cells of triangles and segments, several rows of a tile at a time.
 
 #include "occlusion/occluder.h"
 
@@ -142,7 +142,7 @@ class OneSide {
         triangles_(over.occluder.mesh.triangles.data() + over.occluder.part.first_triangle),
         neighbours_(over.occluder.mesh.neighbours.data() + over.occluder.part.first_triangle) {}
 
-  /// \returns whether any triangle counts.
+  /// Sets the reached cells and the ends of all triangles that count. \returns whether any triangle counts.
   bool Reach() {
     bool any = false;
     if (const ChosenTriangles* const chosen = in_.pass.chosen) {
@@ -162,7 +162,7 @@ class OneSide {
     if (in_.on_screen.triangles[t].turn != turn_) return false;
     return !chosen || chosen->marks[t] == chosen->mark;
   }
-  /// \returns whether the triangle counts.
+  /// Sets the cells and ends of a triangle that is not cut, if it counts. \returns whether it counts.
   bool ReachWhole(std::uint32_t t) {
     if (!Counts(t)) return false;
     const glm::uvec3& c = triangles_[t];
@@ -194,7 +194,7 @@ class OneSide {
     EndAtSegment(a, b, in_.grid.margin, in_.pass.rect, scratch_.ends);
   }
 
-  /// \returns whether the triangle counts.
+  /// Sets the cells and ends of a triangle that is cut, if it counts. \returns whether it counts.
   bool ReachCut(const ClippedTriangle& cut, const ScreenTransform& screen) {
     if (!Counts(cut.triangle)) return false;
     const ClippedPolygon& polygon = cut.polygon;

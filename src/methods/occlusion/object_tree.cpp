@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Builds the tree of objects, and refits it after moves.
 #include "occlusion/object_tree.h"
 
 #include <algorithm>
@@ -12,7 +13,8 @@ namespace {
 
 constexpr int kLevels = 10, kSizeBits = 2;
 
-/// Places on D. Hilbert's curve, by size first: a large object would spoil the box of a group of small objects.
+/// Orders objects by size, then by their place on D. Hilbert's curve. Size comes first, because a large object would
+/// spoil the box of a group of small objects.
 class ObjectCurve {
  public:
   explicit ObjectCurve(std::span<const Box> boxes) {
@@ -29,7 +31,7 @@ class ObjectCurve {
     const glm::dvec3 at = ((glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5 - low_) * (kSteps / extent_);
     std::uint32_t morton = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      // NaN if boxes reach to infinity.
+      // If boxes reach to infinity, `at` is NaN and the step is 0.
       const auto step = std::uint32_t(at[axis] > 0.0 ? std::min(at[axis], kSteps) : 0.0);
       for (int bit = 0; bit < kLevels; ++bit) morton |= (step >> bit & 1) << (3 * bit + axis);
     }

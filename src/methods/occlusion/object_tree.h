@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tree of objects, in groups of groups: objects that are hidden or outside together are tested at once.
+// A tree of objects in groups, and groups of groups. Objects that are hidden together, or outside together, are tested
+// at once.
 //
 //    level 2                  [ 34 ]                     Items have numbers: first the objects, in an order in which
 //    level 1       [ 32 ]               [ 33 ]           neighbours in space follow each other; then groups of 16
 //    level 0    [0][1]...[15]     [16][17]...[31]        objects, then groups of 16 groups, up to one group of all.
 //
-// The box of an item holds all items below it.
+// The box of an item contains all items below it.
 #pragma once
 
 #include <span>
@@ -17,7 +18,7 @@ namespace frontmost::occlusion_detail {
 
 class ObjectTree {
  public:
-  /// The items in a group, and the most items at which a search begins.
+  /// The number of items in a group, and the most items that a search may begin with.
   static constexpr std::uint32_t group_size = 16, most_on_top = 64;
 
   ObjectTree() = default;
@@ -29,9 +30,9 @@ class ObjectTree {
     boxes_.set(items_[object], box);
     moved_.push_back(items_[object]);
   }
-  /// Makes the boxes of all groups hold the moved objects. O(moved x levels).
+  /// Fits the boxes of all groups to the moved objects. O(moved x levels).
   void refit();
-  /// Whether so many objects have moved that a new order may be better.
+  /// Returns whether so many objects have moved that a new order may be better.
   [[nodiscard]] bool is_outdated() const { return moves_ > 4 * objects_.size(); }
 
   [[nodiscard]] const BoxColumns& boxes() const { return boxes_; }  ///< by item
@@ -53,7 +54,7 @@ class ObjectTree {
     for (std::size_t i = 0; i < level; ++i) first *= group_size, count *= group_size;
     return {first, std::min(count, std::uint32_t(objects_.size()) - first)};
   }
-  /// The item that holds all objects. Precondition: there are objects.
+  /// Returns the group of all objects. Precondition: there are objects.
   [[nodiscard]] std::uint32_t root() const { return first_.back() - 1; }
 
  private:

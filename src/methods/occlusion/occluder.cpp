@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Puts the vertices and triangles of an object on the screen.
 #include "occlusion/occluder.h"
 
 #include <cmath>
@@ -17,7 +18,8 @@ std::int64_t twice_area(const Corner& a, const Corner& b, const Corner& c) {
   return std::int64_t(b.x - a.x) * (c.y - a.y) - std::int64_t(c.x - a.x) * (b.y - a.y);
 }
 
-/// Whether a triangle keeps its turn if its corners move by up to two steps, more than snapping and rounding move them.
+/// Returns whether a triangle keeps its turn if its corners move by up to two steps, more than snapping and rounding
+/// move them.
 template <class Corner>
 bool is_turn_certain(const Corner& a, const Corner& b, const Corner& c) {
   const std::int64_t reach =
@@ -25,7 +27,7 @@ bool is_turn_certain(const Corner& a, const Corner& b, const Corner& c) {
   return std::abs(twice_area(a, b, c)) > 4 * reach + 32;
 }
 
-/// Whether each triangle without area on the screen has triangles with area beyond all its sides.
+/// Returns whether each triangle without area on the screen has triangles with area beyond all its sides.
 bool lies_along_others(const HidingObject& occluder, const OccluderOnScreen& on_screen) {
   const std::uint32_t first = occluder.part.first_triangle;
   for (std::uint32_t t = 0; t < on_screen.triangles.size(); ++t) {

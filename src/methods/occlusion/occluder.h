@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The cells that an object covers. The ends are the sides that no two of its triangles of one turn share. The number of
-// triangles over a place is the winding number of the ends about it, which changes only across an end:
+// Finds the cells that an object covers. An end is a side that no two of the object's triangles with the same turn
+// share. The number of triangles over a point is the winding number of the ends about it, which changes only across an
+// end:
 //
 //     +---+---+---+---+---+     reached    the cell's middle lies in a triangle
 //     |   | /´|\  |   |   |     ends       a side without a neighbour comes near the cell
@@ -8,7 +9,8 @@
 //     | / |   |   \   |   |     Cells that are reached and have no ends are covered everywhere.
 //     +---+---+---+---+---+
 //
-// Snapping moves ends by less than the margin that they are widened by. Triangles left out only make more ends.
+// Ends are widened by a margin, which is greater than the distance that snapping moves them. Leaving out triangles only
+// makes more ends.
 #pragma once
 
 #include <span>
@@ -20,22 +22,23 @@
 
 namespace frontmost::occlusion_detail {
 
-/// An object's triangles, and their place.
+/// An object's triangles, and its pose in the world.
 struct HidingObject {
   const OccluderMesh& mesh;
   const OccluderPart& part;
   const glm::dmat4& world_from_mesh;
 };
 
-/// How a triangle turns on the screen. `none`: it has no area there, or its turn is not certain.
+/// How a triangle turns on the screen; `none` if it has no area there, or its turn is not certain.
 enum class ScreenTurn : std::int8_t { none, clockwise, counter_clockwise };
 
-/// The turn of all pieces of the fan from the first corner, or none if pieces differ: rounding may fold a sliver over.
+/// Returns the turn of all triangles of the fan from the first corner, or `none` if they differ, because rounding may
+/// fold a sliver over.
 [[nodiscard]] ScreenTurn turn_of(const ClippedPolygon& polygon);
 
 struct TriangleOnScreen {
   ScreenTurn turn = ScreenTurn::none;
-  bool is_cut = false;  ///< could not be snapped whole
+  bool is_cut = false;  ///< true if it could not be snapped whole
   float farthest = 0;   ///< greatest planar distance of its corners, rounded up
 };
 
@@ -57,8 +60,9 @@ struct OccluderOnScreen {
   std::vector<VertexOnScreen> vertices;
   std::vector<TriangleOnScreen> triangles;
   std::vector<ClippedTriangle> cut;
-  /// All visible parts of the object lie in cells that a pass over all of it reaches or has ends in: no triangle was
-  /// cut, and triangles without area on the screen lie along the sides of triangles with area.
+  /// True if all visible parts of the object lie in cells that a pass over the whole object reaches or has ends in. For
+  /// this, no triangle may be missing or cut, and triangles without area on the screen must lie along the sides of
+  /// triangles with area.
   bool is_told_by_cells = true;
   /// Snapping changes the turn of no triangle.
   bool has_certain_turns = true;
@@ -66,16 +70,16 @@ struct OccluderOnScreen {
 
 void put_on_screen(const CellGrid& grid, const HidingObject& occluder, OccluderOnScreen& out);
 
-/// A bound greater than the rounding of a vertex's planar distance.
+/// Returns an upper bound of the rounding of a vertex's planar distance.
 [[nodiscard]] float distance_rounding(const ScreenTransform& screen, const glm::vec3& world);
 
-/// The triangles of an object that count.
+/// The triangles of an object that count in a pass.
 struct ChosenTriangles {
   std::span<const std::uint32_t> whole;  ///< triangles that are not cut
   std::span<const ClippedTriangle> cut;  ///< triangles that are cut
-  std::span<const std::uint16_t> marks;  ///< by triangle: `mark` if the triangle counts, and only then
+  std::span<const std::uint16_t> marks;  ///< by triangle: equals `mark` if and only if the triangle counts
   std::uint16_t mark = 0;
-  const ScreenTransform* screen = nullptr;  ///< the transform that cuts them
+  const ScreenTransform* screen = nullptr;  ///< the transform that cut the cut triangles
 };
 
 /// The part of an object that is added to the cover.
@@ -83,7 +87,7 @@ struct CoverPass {
   CellRect rect;                                    ///< bounds of the object
   float distance;                                   ///< no triangle that counts is farther
   bool clockwise = true, counter_clockwise = true;  ///< whether these turns count
-  const ChosenTriangles* chosen = nullptr;          ///< nullptr: all triangles
+  const ChosenTriangles* chosen = nullptr;          ///< nullptr if all triangles count
 };
 
 /// A pass over an object.

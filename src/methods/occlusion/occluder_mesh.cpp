@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes the occluder mesh of an instance: welds vertices, divides the mesh into parts, and finds neighbours.
 #include "occlusion/occluder_mesh.h"
 
 #include <algorithm>
@@ -12,14 +13,14 @@
 namespace frontmost::occlusion_detail {
 namespace {
 
-/// Holes are not counted here: Cutouts knows them.
+/// Returns whether a material is see-through. Holes do not count here, because Cutouts has them.
 bool is_see_through(const Scene& scene, std::uint32_t material) {
   return material < scene.materials.size() && scene.materials[material].is_see_through();
 }
 
-/// A triangle that is seen, by its vertices' first ones.
+/// A triangle with finite vertices. Each corner is the first vertex of the mesh at its position.
 struct WeldedTriangle {
-  std::uint32_t number;  ///< in the mesh
+  std::uint32_t number;  ///< index in the mesh
   glm::uvec3 corners;
   std::uint32_t part;
   bool hides;
@@ -46,7 +47,7 @@ std::vector<WeldedTriangle> seen_triangles(const PlacedScene& placed, std::uint3
   return seen;
 }
 
-/// Numbers the connected parts in the order of their first triangles. \returns how many there are.
+/// Numbers the connected parts in the order of their first triangles. \returns the number of parts.
 std::uint32_t tell_parts_apart(std::size_t vertex_count, std::vector<WeldedTriangle>& triangles) {
   DisjointSets<> together(vertex_count);
   for (const WeldedTriangle& t : triangles) {
@@ -71,7 +72,7 @@ class ClusterCutter {
     for (const WeldedTriangle& t : triangles)
       middles_.push_back(positions[t.corners.x] / 3.0f + positions[t.corners.y] / 3.0f + positions[t.corners.z] / 3.0f);
   }
-  /// Numbers the clusters. \returns how many there are.
+  /// Numbers the clusters. \returns the number of clusters.
   std::uint32_t cut() {
     std::vector<std::uint32_t> all(triangles_.size());
     std::iota(all.begin(), all.end(), 0u);
@@ -103,10 +104,10 @@ class ClusterCutter {
   std::uint32_t count_ = 0;
 };
 
-/// By part, the hiding triangles of other parts that share a vertex with it, each once and in order.
+/// Returns, by part, the hiding triangles of other parts that share a vertex with the part, each once and in order.
 std::vector<std::vector<std::uint32_t>> touching(std::size_t vertex_count, const std::vector<WeldedTriangle>& triangles,
                                                  std::size_t part_count) {
-  // Parts of each vertex: most vertices have one.
+  // The parts that use each vertex: mostly one.
   std::vector<std::vector<std::uint32_t>> parts_of(vertex_count);
   for (const WeldedTriangle& t : triangles)
     for (int k = 0; k < 3; ++k) {
@@ -174,10 +175,10 @@ class PartWriter {
   const std::vector<glm::vec3>& positions_;
   const std::vector<WeldedTriangle>& seen_;
   OccluderMesh& out_;
-  std::vector<std::uint32_t> number_;  ///< by vertex, its last number in the output
+  std::vector<std::uint32_t> number_;  ///< by vertex: its latest index in the output
 };
 
-/// By triangle and side, the only other triangle there, if it is wound alike.
+/// Returns, by triangle and side, the triangle across the side, if it is the only one there and has the same winding.
 std::vector<glm::uvec3> neighbours_of(const OccluderMesh& mesh, const Execution& execution) {
   const EdgeNeighbours edges(mesh.triangles, mesh.positions.size(), execution);
   std::vector<glm::uvec3> neighbours(mesh.triangles.size());

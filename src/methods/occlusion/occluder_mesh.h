@@ -15,21 +15,21 @@
 
 namespace frontmost::occlusion_detail {
 
-/// Consecutive triangles, and the consecutive vertices that only they use. After a cluster's own triangles come
-/// triangles of other clusters that touch it: without them, the cluster would leave a row of cells open beside the next
-/// one.
+/// A part of a mesh: consecutive triangles, and the consecutive vertices that only these use. After a cluster's own
+/// triangles come triangles of other clusters that touch it. Without these, the cluster would leave a row of cells open
+/// beside the next cluster.
 struct OccluderPart {
   std::uint32_t first_triangle = 0, triangle_count = 0;
   std::uint32_t first_vertex = 0, vertex_count = 0;
-  bool is_whole = true;   ///< no triangle of the mesh's part is missing for hiding nothing
+  bool is_whole = true;   ///< no triangle of the mesh's part was left out because it hides nothing
   bool is_closed = true;  ///< every side of a triangle has a neighbour
   bool has_double_sided = false, has_one_sided = false;  ///< whether the mesh's part has such triangles
   Box bounds;  ///< bounds of all triangles of the mesh's part, and of hiding triangles that touch it
-  std::vector<std::uint32_t> own;  ///< its triangles with finite vertices, by number in the mesh
+  std::vector<std::uint32_t> own;  ///< indices in the mesh of the part's own triangles with finite vertices
 };
 
 struct OccluderMesh {
-  std::vector<glm::vec3> positions;  ///< each position once for each part that has it
+  std::vector<glm::vec3> positions;  ///< each position is stored once for each part that uses it
   std::vector<glm::uvec3> triangles;
   std::vector<glm::uvec3> neighbours;
   std::vector<OccluderPart> parts;  ///< at least one
@@ -56,7 +56,7 @@ struct OccluderMesh {
   static constexpr int most_around = 32;
 };
 
-/// The occluder mesh of an instance. It has one part, or one for each connected part, or one for each cluster.
+/// Returns the occluder mesh of an instance. It has one part, or one for each connected part, or one for each cluster.
 /// O(triangles), or O(triangles log triangles) with several parts.
 [[nodiscard]] OccluderMesh occluder_mesh(const PlacedScene& placed, std::uint32_t instance, ObjectUnit unit,
                                          const Execution& execution = {});

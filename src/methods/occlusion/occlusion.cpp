@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Occlusion: makes objects, their meshes and their tree, culls views, and answers queries for boxes.
 #include "frontmost/occlusion.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ namespace {
 
 using namespace occlusion_detail;
 
-/// A box that holds the transformed `box`, with positions rounded like vertices.
+/// Returns a box that contains the transformed `box`. Positions are rounded like vertices.
 Box world_box(const glm::dmat4& world_from_mesh, const Box& box) {
   Box world;
   if (box.is_empty()) return world;
@@ -76,7 +77,7 @@ struct Occlusion::State {
 
   const Surfaces& surfaces;
   ObjectUnit unit;
-  std::uint64_t moves;  ///< moves of the surfaces that the tree has followed
+  std::uint64_t moves;  ///< number of the surfaces' moves that the tree has followed
   std::vector<OccluderMesh> meshes;
   std::vector<CulledObject> objects;
   std::vector<std::uint32_t> first_objects;  ///< by instance; then the number of objects

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The sweep from the eye outwards: ranges of distances, long objects, and the queue of tests and covers.
 #include "occlusion/sweep.h"
 
 #include <algorithm>
@@ -18,8 +19,9 @@ class DistanceRanges {
   static constexpr int most = 4096;
 
   DistanceRanges() = default;
-  /// Ranges of the distances from `least` to `greatest`. In perspective distances must be positive, and farther ranges
-  /// are longer; in parallel projection all ranges have one length. Distances beyond have the first or the last number.
+  /// Makes ranges of the distances from `least` to `greatest`. In perspective distances must be positive, and farther
+  /// ranges are longer; in parallel projection all ranges have one length. Distances outside have the first or the last
+  /// number.
   DistanceRanges(bool orthographic, float least, float greatest) : orthographic_(orthographic), least_(least) {
     if (!(least < greatest)) return;
     if (orthographic) {
@@ -41,9 +43,9 @@ class DistanceRanges {
     const std::uint32_t bits = bits_as<std::uint32_t>(distance) - bits_as<std::uint32_t>(least_);
     return std::min(int(bits >> shift_), count_ - 1);
   }
-  /// A lower bound of all distances with this number or a greater one, for numbers from 0 to count().
+  /// Returns a lower bound of all distances with this number or a greater one, for numbers from 0 to count().
   [[nodiscard]] float least_of(int number) const {
-    // One step nearer than the rounding of operator() may put the border.
+    // The bound is nearer than the border by more than the rounding of operator().
     if (orthographic_) return per_unit_ > 0 ? least_ + (float(number) - 0.01f) / per_unit_ : least_;
     return bits_as<float>(bits_as<std::uint32_t>(least_) + (std::uint32_t(number) << shift_));
   }
@@ -59,10 +61,10 @@ namespace {
 /// At most so many cuts are made for one object; no triangle is cut if more would be needed.
 constexpr std::size_t kMostCuts = 1 << 13;
 
-/// A triangle is worth cutting if it begins so many slabs before the slab of its farthest vertex, and reaches so many
-/// cells across and down.
+/// A triangle is worth cutting if it begins at least so many slabs before the slab of its farthest vertex, and is at
+/// least so many cells wide and high.
 constexpr int kLeastSlabs = 12, kLeastCells = 8;
-/// Triangles are cut for every third slab, except slabs nearer than a sixty-fourth of the object's farthest end.
+/// Triangles are cut for every third slab, except for slabs nearer than 1/64 of the distance of the object's far end.
 constexpr int kSlabsBetweenCuts = 3, kMostSlabs = 36;
 
 bool is_cut_for(int slab) { return slab % kSlabsBetweenCuts == 0; }
@@ -71,7 +73,7 @@ glm::uvec3 corners_of(const HidingObject& occluder, std::uint32_t triangle) {
   return occluder.mesh.triangles[occluder.part.first_triangle + triangle] - occluder.part.first_vertex;
 }
 
-/// The least rectangle around places on the screen.
+/// The least rectangle around points on the screen.
 class ScreenExtent {
  public:
   template <class Place>
@@ -98,17 +100,18 @@ class ScreenExtent {
   glm::ivec2 high_ = glm::ivec2(std::numeric_limits<std::int32_t>::min());
 };
 
-/// A slab is so many times shorter than the ranges to twice the distance. Objects no longer than four slabs have none.
+/// kSlabsOfDouble slabs reach from a distance to twice this distance. Objects of at most kShortSlabs slabs are not
+/// divided.
 constexpr int kSlabsOfDouble = 6, kShortSlabs = 4;
 
-/// Whether finding the object's covered cells is not worth the time: an object with more than a triangle for every two
-/// cells has hardly any cell without ends.
+/// Returns whether finding the object's covered cells is not worth the time. An object with more than a triangle for
+/// every two cells has hardly any cell without ends.
 bool is_dense(const OccluderPart& part, const CellRect& rect) {
   const std::size_t cells = std::size_t(rect.x1 - rect.x0) * std::size_t(rect.y1 - rect.y0);
   return 2 * std::size_t(part.triangle_count) > cells + 64;
 }
 
-/// Whether every cell of an object has ends, so that it covers nothing.
+/// Returns whether every cell of an object has ends, so that the object covers nothing.
 bool is_tiny(const CellRect& rect) { return rect.x1 - rect.x0 <= 2 || rect.y1 - rect.y0 <= 2; }
 
 }  // namespace
@@ -119,16 +122,16 @@ bool is_tiny(const CellRect& rect) { return rect.x1 - rect.x0 <= 2 || rect.y1 - 
 ///    eye  |  slab 0  |  slab 1  |  slab 2  |        a triangle belongs to the slab of its farthest vertex
 ///         \___________/\_________/\________/
 ///
-/// The object has ends at the border of two slabs, and cells along the border would stay open. So a slab covers
-/// together with the triangles of nearer slabs that share a vertex with it; its ends then lie within covered cells. A
-/// triangle that reaches through several slabs, such as half of a floor, covers in every third of these slabs, as far
-/// as the slab's far side, which cuts it like a far plane.
+/// Triangles have ends at the border of two slabs, so cells along the border would stay open. Therefore the triangles
+/// of a slab cover together with the triangles of nearer slabs that share a vertex with them; the ends then lie within
+/// covered cells. A triangle that reaches through several slabs, such as half of a floor, covers in every third of
+/// these slabs, as far as the slab's far side, which cuts it like a far plane.
 class LongObject {
  public:
-  /// The object's triangles on the screen. Filled by put_on_screen() first.
+  /// The object's triangles on the screen. put_on_screen() must fill it before other calls.
   OccluderOnScreen on_screen;
 
-  /// Ranges [first, last] in slabs of `length` ranges each.
+  /// The ranges [first, last], divided into slabs of `length` ranges each.
   struct Slabs {
     int first, last, length;
     [[nodiscard]] int count() const { return (last - first) / length + 1; }
@@ -162,7 +165,8 @@ class LongObject {
     const bool has_whole = slab_begin_[std::size_t(slab) + 1] > slab_begin_[std::size_t(slab)];
     return has_whole || (slab >= first_reached_ && is_cut_for(slab));
   }
-  /// The triangles that cover for a slab, within `rect`. Borrows from this object until the next call.
+  /// Returns the pass for a slab: the triangles that cover in it, and their cells within `rect`. Borrows from this
+  /// object until the next call.
   [[nodiscard]] CoverPass choose(const CellGrid& grid, const HidingObject& occluder, int slab, const CellRect& rect) {
     const auto begin = by_slab_.begin() + slab_begin_[std::size_t(slab)];
     const auto end = by_slab_.begin() + slab_begin_[std::size_t(slab) + 1];
@@ -175,7 +179,7 @@ class LongObject {
     const std::size_t cut_by_slab = cut_.size();
     for (auto t = begin; t != end; ++t) choose_around(occluder, slab, *t);
     for (std::size_t i = 0; i < cut_by_slab; ++i) choose_around(occluder, slab, cut_[i].triangle);
-    // Triangles that the view cuts are not whole either.
+    // Triangles that the view cuts are not whole either, and belong to cut_.
     const auto is_cut = [&](std::uint32_t t) { return on_screen.triangles[t].is_cut; };
     if (!on_screen.cut.empty()) whole_.erase(std::remove_if(whole_.begin(), whole_.end(), is_cut), whole_.end());
     for (const ClippedTriangle& cut : on_screen.cut)
@@ -238,7 +242,7 @@ class LongObject {
     first_reached_ = slabs.count();
     for (const Reaching& r : reaching_) first_reached_ = std::min(first_reached_, r.first_slab);
   }
-  /// Chooses triangles that reach through a slab.
+  /// Chooses triangles that reach through a slab, cut at the slab's far side.
   void choose_cut(const HidingObject& occluder, int slab) {
     if (!(screen_->far > screen_->near)) return;
     for (const Reaching& r : reaching_) {
@@ -251,8 +255,8 @@ class LongObject {
       cut_.push_back(cut);
     }
   }
-  /// Chooses triangles of nearer slabs that share a vertex with `triangle`, at edges whose neighbours are not of the
-  /// slab.
+  /// Chooses triangles of nearer slabs that share a vertex with `triangle`. Corners at which both neighbours of the
+  /// triangle are of the slab are left out.
   void choose_around(const HidingObject& occluder, int slab, std::uint32_t triangle) {
     const std::uint32_t first = occluder.part.first_triangle;
     const auto mark = std::uint16_t(slab + 1);
@@ -280,7 +284,7 @@ class LongObject {
   std::vector<float> far_sides_;           ///< by slab; infinity for the last slab
   std::vector<std::uint16_t> slabs_;       ///< by triangle
   std::vector<std::uint32_t> by_slab_;     ///< triangles in the order of their slabs
-  std::vector<std::uint32_t> slab_begin_;  ///< within by_slab_; one more than slabs
+  std::vector<std::uint32_t> slab_begin_;  ///< by slab: where it begins in by_slab_; then the end
   std::vector<Reaching> reaching_;
   int first_reached_ = 0;  ///< the first slab in which a reaching triangle begins
   // State of the current slab.
@@ -299,11 +303,11 @@ struct Sweep::Memory {
     std::uint32_t item;  ///< an object
     std::uint32_t long_object = no_index;
     int slab = 0;
-    std::size_t first_row = 0;  ///< within solid
+    std::size_t first_row = 0;  ///< index in `solid`
     std::uint32_t next = no_index;
   };
-  std::vector<ScreenBox> boxes;                      ///< by item, once the item is queued
-  std::vector<std::uint32_t> first_test, next_test;  ///< lists of items by range
+  std::vector<ScreenBox> boxes;                      ///< by item; valid once the item is queued
+  std::vector<std::uint32_t> first_test, next_test;  ///< linked lists of items: first by range, next by item
   std::vector<std::uint32_t> first_event;            ///< by range
   std::vector<Event> events;
   std::vector<std::unique_ptr<LongObject>> long_objects;
@@ -349,7 +353,7 @@ class Sweep::Run {
     return {mesh, mesh.parts[o.part], instance.world_from_mesh};
   }
 
-  /// Ranges between the nearest and the farthest object, whether they are on the screen or not.
+  /// Makes ranges between the nearest and the farthest object, whether they are on the screen or not.
   void find_ranges() {
     const ScreenTransform& t = view_.grid.transform;
     find_on_screen(view_.grid, scene_.tree.boxes(), {scene_.tree.root(), 1}, memory_.boxes, view_.isa);
@@ -401,14 +405,14 @@ class Sweep::Run {
       if (!memory_.boxes[i].rect.is_empty()) hide(i);
   }
 
-  /// Whether the box is certainly within the viewing volume. A box that reaches to the border may go beyond it.
+  /// Returns whether the box is certainly within the viewing volume. A box that reaches to the border may go beyond it.
   [[nodiscard]] bool is_inside(const ScreenBox& box) const {
     const CellGrid& grid = view_.grid;
     return box.rect.x0 > 0 && box.rect.y0 > 0 && box.rect.x1 < grid.columns && box.rect.y1 < grid.rows &&
            box.nearest >= grid.transform.near && box.farthest <= grid.transform.far;
   }
 
-  /// Tests, by its own triangles, an object whose box is not covered. Schedules its cover if it may be seen.
+  /// Tests an object, whose box is not covered, by its own triangles. Schedules its cover if it may be seen.
   bool may_be_seen(std::uint32_t item, const ScreenBox& box) {
     if (is_tiny(box.rect)) return true;
     const HidingObject it = occluder(item);
@@ -427,7 +431,7 @@ class Sweep::Run {
       memory_.long_objects.push_back(std::make_unique<LongObject>());
     LongObject& o = *memory_.long_objects[used_long_objects_];
     put_on_screen(view_.grid, it, o.on_screen);
-    // Nothing is known to lie before an object that reaches to the eye.
+    // An object that reaches to the eye is not tested, because no cover is certainly nearer.
     const ScreenBox& box = memory_.boxes[item];
     if (box.nearest > -infinite_distance) {
       const std::size_t first_row = add_rows(box.rect);
@@ -443,7 +447,7 @@ class Sweep::Run {
     return true;
   }
 
-  /// Tests the object, and also finds the cells that it covers.
+  /// Returns whether the object is hidden by the cover, and finds the cells that it covers itself.
   bool is_behind_cover(std::uint32_t item, const HidingObject& it, const OccluderOnScreen& on_screen,
                        std::size_t first_row) {
     CoverPass pass{.rect = memory_.boxes[item].rect, .distance = memory_.boxes[item].farthest};
@@ -452,8 +456,9 @@ class Sweep::Run {
     if (it.part.is_closed && on_screen.cut.empty() && pass.clockwise) pass.counter_clockwise = false;
     const bool is_near_open = find_solid({view_.grid, it, on_screen, pass}, memory_.scratch, cover_,
                                          memory_.solid.data() + first_row, view_.isa);
-    // Snapping may turn a needle, which is then left out although its side faces the eye. A closed object has other
-    // triangles before and behind it. With double-sided triangles among one-sided ones, fronts alone do not tell.
+    // Snapping may turn a needle over, which is then culled although its visible side faces the eye. A closed object
+    // has other triangles in front of the needle and behind it. If double-sided and one-sided triangles mix, fronts
+    // alone do not tell whether the object is hidden.
     const bool is_mixed = view_.culling == Culling::material && it.part.has_double_sided && it.part.has_one_sided;
     const bool are_all_told =
         culling_of(it.part) == Culling::none || it.part.is_closed || (on_screen.has_certain_turns && !is_mixed);
@@ -496,14 +501,14 @@ class Sweep::Run {
     if (culling == Culling::back || culling == Culling::both) backs = false;
   }
 
-  /// The culling under which all remaining triangles certainly hide. If one-sided and double-sided triangles mix, only
-  /// fronts remain.
+  /// Returns the culling with which all remaining triangles certainly hide. If one-sided and double-sided triangles
+  /// mix, only fronts remain.
   [[nodiscard]] Culling culling_of(const OccluderPart& part) const {
     if (view_.culling != Culling::material) return view_.culling;
     return part.has_double_sided && !part.has_one_sided ? Culling::none : Culling::back;
   }
 
-  /// \returns the index in Memory::solid at which the rows of a rectangle begin.
+  /// Adds empty rows for a rectangle. \returns the index in Memory::solid at which they begin.
   std::size_t add_rows(const CellRect& rect) {
     const std::size_t first_row = memory_.solid.size();
     memory_.solid.resize(first_row + std::size_t(rect.tile_count()) * tile_rows, 0);

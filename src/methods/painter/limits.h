@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Limits of the work for an order, and how often the work polls for cancellation.
 //
-// Cycles are cut until none is left. Thousands of triangles that pass through each other take millions of pieces, so
-// the number of cuts is limited, and the error names the limit. The number of steps is limited as well, as a stack of n
-// sheets takes n * n steps. A cancelled run ends within a millisecond: loops count their steps in a Poll, because
-// asking the caller at every step would cost more than many of the steps.
+// Cycles are cut until none is left. Thousands of triangles that pass through each other need millions of pieces, so
+// the number of cuts is limited, and the error names the limit. The number of steps is limited as well, because a stack
+// of n polygons takes n * n steps. A cancelled run ends within a millisecond. Loops count their steps in a Poll,
+// because asking the caller at every step would cost more than many of the steps.
 #pragma once
 
 #include <string>
@@ -18,7 +18,7 @@ namespace frontmost::painter_detail {
   throw Error(ErrorCode::limit_exceeded, "painter", "more than " + std::to_string(most) + " polygons and pieces");
 }
 
-/// The steps of a function that takes `polygons` triangles or pieces, summed over all its threads.
+/// Counts the steps of a function that gets `polygons` triangles or pieces, summed over all its threads.
 class PaintEffort {
  public:
   PaintEffort(const Execution& execution, std::size_t polygons)

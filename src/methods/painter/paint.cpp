@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coverage and keys are those of the z-buffer: from vertices snapped to 1/256 pixel, by the top-left rule. So the
-// picture of a correct order is the z-buffer's, apart from samples at the rims of cuts.
+// Paints an order. Coverage and keys are those of the z-buffer: from vertices snapped to 1/256 pixel, by the top-left
+// rule. So a correct order gives the picture of the z-buffer, apart from samples at the rims of cuts.
 //
 // A polygon that was cut is filled like its triangle, but only with samples on the polygon's side of every cut. So the
 // pieces of a triangle together cover its samples, each once, except on the cuts themselves, where both pieces have the
@@ -19,9 +19,9 @@
 namespace frontmost {
 namespace {
 
-/// Pixels: by how much snapping may move a corner, how far a sample on a cut may lie beyond it, and the shortest cut
-/// that counts. Planes that meet at small angles leave corners so inaccurate that a cut between near ones has no
-/// direction.
+/// Lengths in pixels: how far snapping may move a corner, how far beyond a cut a sample still counts as on the cut, and
+/// the length of the shortest cut that counts. Corners where planes meet at small angles are so inaccurate that a cut
+/// between two near corners has no direction.
 constexpr double kSnapping = 1.0 / 128, kOnCut = 1e-9, kShortest = 1.0 / 1024;
 
 /// Vertices in 1/256 pixel from the image's top left, clockwise with y down.
@@ -69,7 +69,8 @@ class CutTriangle {
   }
   [[nodiscard]] glm::dvec2 low() const { return low_ - kSnapping; }
   [[nodiscard]] glm::dvec2 high() const { return high_ + kSnapping; }
-  /// A sliver whose cuts are all too short to count is filled with the box around it.
+  /// Returns whether the cuts leave the point (x, y). A sliver whose cuts are all too short to count holds all of its
+  /// box.
   [[nodiscard]] bool holds(double x, double y) const {
     if (x < low().x || y < low().y || x > high().x || y > high().y) return false;
     return std::all_of(cuts_.begin(), cuts_.end(), [&](const Cut& cut) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs the stages of stages.h one after another, and repeats sorting and parting for cycles until every piece has its
-// place:
+// place in the order:
 //
 //   members --push--> work, the next on top      sort: pieces that may have an order    -> paint and part
 //                       |          ^             part: a cycle, cut in two by a plane   -> part and sort
 //                       +---run----+             paint: pieces in their order           -> the result
 //
-// Parting stops once groups are small enough to be sorted again: a plane that parts a cycle mostly leaves pieces that
-// have an order, and every further plane would cut pieces that need no cut.
+// Parting stops once groups are small enough to be sorted again, because a plane that parts a cycle mostly leaves
+// pieces that have an order. Every further plane would cut pieces that need no cut.
 #include "frontmost/painter.h"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace painter_detail {
 namespace {
 
 constexpr std::size_t kTrianglesPerPart = 4096;
-/// Relative margin of distances: more than rounding moves them.
+/// Relative margin of distances, which is greater than their rounding.
 constexpr double kMargin = 1e-9;
 
 class Gatherer {
@@ -39,7 +39,8 @@ class Gatherer {
 
   enum class Place : std::uint8_t { outside, inside, crossing };
 
-  /// The place of a triangle; `crossing`: the near or far plane may cut it.
+  /// Sets the extent and the face of a triangle that is not outside. \returns `crossing` if the near or far plane may
+  /// cut it.
   Place gather(PrimitiveId id, PolygonExtent& extent, Face& face) const {
     face = {surfaces_.corners(id), id};
     for (const glm::vec3& corner : face.corners)
@@ -88,12 +89,12 @@ class Gatherer {
   const FacingRule facing_;
 };
 
-/// The plane at a distance before the eye, facing away from it.
+/// Returns the plane at a distance in front of the eye, facing away from the eye.
 Plane plane_at(const View& view, double distance) {
   return {view.eye() + view.forward() * distance, Leg{view.up()}, Leg{view.right()}};
 }
 
-/// Cuts away everything outside the near and far planes. \returns no_index if nothing remains.
+/// Cuts away everything outside the near and far planes. \returns the remaining piece, or no_index if nothing remains.
 std::uint32_t clip(Pieces& pieces, std::uint32_t piece, std::uint32_t near_plane, const Plane& near,
                    std::uint32_t far_plane, const Plane* far) {
   const Sides at_near = pieces.sides(piece, near);
@@ -105,13 +106,14 @@ std::uint32_t clip(Pieces& pieces, std::uint32_t piece, std::uint32_t near_plane
   return at_far.both() ? pieces.cut(piece, far_plane).back : piece;
 }
 
-/// The triangles kept of a part of consecutive ids, in the order of their ids.
+/// The triangles that are kept of a part of consecutive ids, in the order of their ids.
 struct Part {
   std::size_t count = 0;
-  std::vector<std::uint32_t> crossing;  ///< numbered from 0
+  std::vector<std::uint32_t> crossing;  ///< numbers of triangles in the part, from 0
 };
 
-/// Fills a section of the list for every part, then joins the sections. \returns the triangles that cross.
+/// Fills a section of the list for every part, then joins the sections. \returns the triangles that cross the near or
+/// far plane.
 std::vector<std::uint32_t> fill(const Surfaces& surfaces, const Gatherer& gatherer, Pieces& pieces,
                                 const Execution& execution) {
   const std::size_t all = surfaces.primitive_count();
@@ -165,7 +167,7 @@ namespace {
 
 using namespace painter_detail;
 
-/// At most so many other triangles are compared; a copy that is not found among them stays.
+/// The most table entries that a triangle is compared with. A copy that is not found among them stays.
 constexpr int kMostProbes = 64;
 
 /// Odd numbers without a pattern.
@@ -184,7 +186,8 @@ std::uint64_t hash_of(const Face& face) {
   return sum * kMix;
 }
 
-/// Both faces are counter-clockwise to the eye, so the same vertices are in the same cyclic order.
+/// Returns whether the faces have the same vertices. Both faces are counter-clockwise to the eye, so the same vertices
+/// are in the same cyclic order.
 bool is_copy(const Face& a, const Face& b) {
   for (std::size_t turn = 0; turn < 3; ++turn)
     if (a.corners[0] == b.corners[turn])
@@ -192,7 +195,7 @@ bool is_copy(const Face& a, const Face& b) {
   return false;
 }
 
-/// Table of the first triangles of each kind, by their hash, with open addressing.
+/// Hash table of the first triangle of each group of copies, with open addressing.
 class FirstOnes {
  public:
   explicit FirstOnes(std::size_t count) {
@@ -201,7 +204,7 @@ class FirstOnes {
   }
   void prefetch(std::uint64_t hash) const { prefetch_line(&entries_[home(hash)]); }
 
-  /// The piece of which this piece is a copy, or no_index; the piece is then stored.
+  /// Returns the piece that this piece is a copy of, or no_index; this piece is then stored.
   std::uint32_t find_or_add(const Pieces& pieces, std::uint32_t piece, std::uint64_t hash) {
     const auto tag = std::uint32_t(hash);
     std::size_t i = home(hash);
@@ -226,8 +229,8 @@ class FirstOnes {
   std::vector<Entry> entries_;
 };
 
-/// Triangles that coincide: exporters write faces twice, and models are placed twice. Of triangles with the same
-/// vertices only the one with the lowest id is ordered and cut. It is on top of the others, which lie wherever it lies.
+/// Triangles that coincide, because exporters write faces twice, or models are placed twice. Of triangles with the same
+/// vertices, only the one with the lowest id is ordered and cut. The others are its copies and lie directly below it.
 class Copies {
  public:
   /// Takes copies out of `members`, which are in the order of their ids. O(members).
@@ -241,7 +244,7 @@ class Copies {
     for (std::size_t i = 0; i < hashes.size(); ++i) {
       if (i + ahead < hashes.size()) first_ones.prefetch(hashes[i + ahead]);
       const std::uint32_t piece = members[i];
-      // Only whole triangles: a triangle that the near plane cut is a piece by itself.
+      // Only whole triangles are compared, because a triangle that the near plane cut has an outline of its own.
       const std::uint32_t first = pieces.is_whole(piece) ? first_ones.find_or_add(pieces, piece, hashes[i]) : no_index;
       if (first == no_index)
         members[kept++] = piece;
@@ -252,9 +255,9 @@ class Copies {
     std::stable_sort(copies_.begin(), copies_.end(), [](const Copy& a, const Copy& b) { return a.of < b.of; });
   }
 
-  /// Puts copies back, directly below the pieces of the triangle that stayed, unless an occluder hides them. Each copy
-  /// gets the outline of that piece under its own id. \throws Error limit_exceeded if there are more than `most` pieces
-  /// then.
+  /// Puts copies back, directly below each piece of their original, unless the original is an occluder and hides them.
+  /// Each copy gets the outline of that piece and its own id. \throws Error limit_exceeded if there are then more than
+  /// `most` pieces.
   void put_back(Pieces& pieces, std::vector<std::uint32_t>& members, const Occluders& occluders,
                 std::size_t most) const {
     if (copies_.empty()) return;
@@ -295,14 +298,14 @@ class Copies {
   std::vector<Copy> copies_;  ///< sorted by originals; the copies of each from the lowest to the highest id
 };
 
-/// A group without an order is parted until its parts are so many times smaller, and the parts are sorted again. A
-/// factor of 4 takes 1.3 times as long on assemblies of parts that pass through each other, for 2 to 9 % fewer
+/// A group without an order is parted until its parts are smaller by this factor; the parts are then sorted again. On
+/// assemblies of parts that pass through each other, a factor of 4 takes 1.3 times as long and makes 2 to 9 % fewer
 /// polygons, none of them visible. Parting down to single pieces, as PaintMethod::bsp does, takes a third of the time
-/// and leaves half as many polygons again.
+/// and makes 1.5 times as many polygons.
 constexpr std::size_t kFewer = 64;
 
-/// Makes one list of all pieces from a stack of work, the next work on top. A stack replaces recursion, as partitions
-/// may be as uneven as there are pieces.
+/// Orders all pieces by means of a stack of work, with the next work on top. The stack replaces recursion, because
+/// partitions may be so uneven that recursion would be as deep as there are pieces.
 class Orderer {
  public:
   Orderer(Pieces& pieces, const PainterOptions& options, PaintEffort& effort, PaintSteps& steps)
@@ -326,7 +329,7 @@ class Orderer {
   struct Item {
     Work work;
     std::vector<std::uint32_t> members;
-    std::size_t few = 0;  ///< smaller groups are sorted again, larger ones parted further
+    std::size_t few = 0;  ///< groups of at most this size are sorted again, larger groups are parted further
   };
 
   void push(std::vector<std::uint32_t> members, std::size_t few) {
@@ -356,8 +359,7 @@ class Orderer {
                 "more than " + std::to_string(options_.most_cuts) + " cuts: too many triangles intersect");
   }
 
-  /// Throws early the error that would come after all cuts. Called before sorting, which would compare every two
-  /// pieces.
+  /// Refuses a list that needs too many cuts. This is done before sorting, which would compare every two pieces.
   void foresee_cuts(const std::vector<std::uint32_t>& members) {
     const auto count = double(members.size());
     if (0.5 * count * count <= double(options_.most_cuts)) return;

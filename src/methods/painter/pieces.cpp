@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A corner in a cutting plane belongs to both halves. A side between a corner before the plane and one behind it gets a
-// new corner in both halves, the same to the bit. Its place is computed twice, between the ends of its side and as the
-// meeting point of three planes, and the better one is kept, with its bound.
+// A corner in a cutting plane belongs to both halves. A side with one end in front of the plane and the other end
+// behind it gets a new corner, which is the same to the bit in both halves. Its position is computed twice, by
+// interpolation between the ends of the side and as the meeting point of three planes. The better position is kept,
+// with its bound.
 //
 // A corner is also stored as the planes that meet there, which always come from triangles and from the eye, never from
 // computed points. So an exact sign stays a polynomial of the ninth degree in the input, however often a piece was cut.
-// The side of a corner is decided by its place if the bound allows it, and otherwise exactly by its planes.
+// The side of a corner is decided by its position if the bound allows it, and otherwise exactly by its planes.
 #include "painter/pieces.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// Relative error of coordinates: corners are known at least this well.
+/// Relative error of coordinates that is allowed for corners.
 constexpr double kCornerError = 1e-11;
 
 float rounded_down(double value) {
@@ -35,7 +36,7 @@ ExtentBuilder::ExtentBuilder(const Sight& sight)
       unit_(glm::abs(glm::dvec2(sight.to_screen({1, 1, 1})) - centre_)) {}
 
 void ExtentBuilder::include(const glm::dvec3& in_eye, double error) {
-  // Rounding moves a place by some 1e-15 of itself.
+  // Rounding moves a point by some 1e-15 of its coordinates.
   error += 1e-12 * (std::abs(in_eye.x) + std::abs(in_eye.y) + std::abs(in_eye.z));
   nearest_ = std::min(nearest_, in_eye.z - error);
   farthest_ = std::max(farthest_, in_eye.z + error);
@@ -130,8 +131,9 @@ PieceShape Pieces::shape_of(std::uint32_t piece) const {
   return whole;
 }
 
-/// The corner between the ends of the side, or where the planes meet, whichever is known better. The former gets worse
-/// from cut to cut, the latter if planes meet at small angles; with both bad, drawings would have corners pixels away.
+/// Returns the corner at which a plane cuts a side: interpolated between the ends of the side, or where the planes
+/// meet, whichever is known better. Interpolation gets worse from cut to cut, and meeting points are bad if planes meet
+/// at small angles. If both are bad, drawings would have corners pixels away, so the slow closest_meeting() is tried.
 /// Interpolation begins at the end that comes first in space, so neighbours are cut at the same point to the bit.
 PieceCorner Pieces::crossing(const Face& face, const PieceShape& shape, std::size_t side, std::uint32_t plane) const {
   const PieceCorner *from = &shape.corners[side], *to = &shape.corners[(side + 1) % shape.corners.size()];

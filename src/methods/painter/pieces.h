@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Triangles as a view sees them, and the convex pieces that they are cut into.
 //
-//        whole            cut by a plane          A piece is known by its triangle and, if it was cut, by the
+//        whole            cut by a plane          A piece is given by its triangle and, if it was cut, by the
 //          /\                  /\                 sides of its outline. A side is an edge of the triangle
 //         /  \                /  \.....           (0 to 2) or a stored cutting plane (first_cut + k). Two sides
 //        /    \              / front              meet at a corner, whose place is rounded, with a bound; its
@@ -30,7 +30,8 @@ struct PolygonExtent {
 struct Face {
   std::array<glm::vec3, 3> corners;
   PrimitiveId id;
-  std::uint32_t shape = no_index;  ///< the piece's own outline, in Pieces; no_index: all of the triangle
+  std::uint32_t shape = no_index;  ///< index of the piece's own outline in Pieces; no_index if the piece is all of the
+                                   ///< triangle
 
   [[nodiscard]] glm::dvec3 corner(std::size_t k) const { return glm::dvec3(corners[k]); }
   [[nodiscard]] Plane plane() const { return Plane::through(corner(0), corner(1), corner(2)); }
@@ -73,7 +74,7 @@ class Pieces {
   [[nodiscard]] std::uint32_t corner_count(std::uint32_t piece) const {
     return is_whole(piece) ? 3 : std::uint32_t(shape(piece).corners.size());
   }
-  /// Sets corner_count() corners: the piece as a polygon of an order.
+  /// Sets corner_count() corners to those of the piece on the screen.
   void copy_corners(std::uint32_t piece, PaintCorner* corners) const;
 
   void add(const PolygonExtent& extent, const Face& face) {
@@ -90,12 +91,12 @@ class Pieces {
     faces_[piece] = face;
   }
 
-  /// The sides of a plane that the piece lies on, exactly.
+  /// Returns the sides of a plane on which the piece has points, exactly.
   [[nodiscard]] Sides sides(std::uint32_t piece, const Plane& plane) const;
-  /// Whether no point of the piece is on the side `sign` of a plane. Quicker than sides(). Sets `is_flat` if the whole
-  /// triangle is in the plane.
+  /// Returns whether no point of the piece is on the side `sign` of a plane. Quicker than sides(). Sets `is_flat` if
+  /// the whole triangle is in the plane.
   [[nodiscard]] bool keeps_off(std::uint32_t piece, const Plane& plane, int sign, bool& is_flat) const;
-  /// The plane through the eye and an edge of the triangle: positive on the triangle's side.
+  /// Returns the plane through the eye and an edge of the triangle, positive on the triangle's side.
   [[nodiscard]] Plane edge_plane(const Face& face, std::uint32_t edge) const {
     const glm::dvec3 p(face.corners[edge]), q(face.corners[edge == 2 ? 0 : edge + 1]);
     const Leg sight = sight_.is_parallel() ? Leg{sight_.forward()} : Leg{p, sight_.eye()};
@@ -128,7 +129,8 @@ class Pieces {
   std::deque<Plane> planes_;
 };
 
-/// The box around points of eye space, each known to within `error`, as far as they are before the eye.
+/// Finds the box around points of eye space, as far as they are in front of the eye. Each point is known to within an
+/// error.
 class ExtentBuilder {
  public:
   explicit ExtentBuilder(const Sight& sight);

@@ -3,11 +3,11 @@
 //
 //    panorama   columns are azimuths, rows are elevations
 //    fisheye    the angle from the axis grows with the distance from the middle; beyond the rim there is no ray
-//    lidar      columns are steps, rows are its rings
+//    lidar      columns are the scanner's steps, rows are its rings
 //    pattern    one row of directions, as given
 //
-// Sines and cosines come from turn(), which gives the same bits on every machine and is exact at quarters. Places
-// within a pixel are in 1/256 pixel, and their angles still are fractions of integers.
+// Sines and cosines come from turn(), which gives the same bits on every machine and is exact at quarters of a turn.
+// Positions within a pixel are in 1/256 pixel, so their angles are fractions of integers, too.
 #pragma once
 
 #include <algorithm>
@@ -25,18 +25,19 @@ namespace frontmost::raycast_detail {
   return turn(std::int64_t(std::nearbyint(radians / (6.28318530717958647692) * whole)), std::int64_t(whole));
 }
 
-/// The direction with this (cos, sin) of azimuth and elevation.
+/// Returns the direction with this (cos, sin) of azimuth and of elevation.
 [[nodiscard]] inline glm::dvec3 direction_at(const glm::dvec2& azimuth, const glm::dvec2& elevation) {
   return {azimuth.y * elevation.x, elevation.y, -azimuth.x * elevation.x};
 }
 
-/// A pixel, and a place in it in 1/256 pixel.
+/// A pixel, and a position in it in 1/256 pixel.
 struct PixelPlace {
   int x, y;
   glm::ivec2 offset;
 };
 
-/// (cos, sin) of the azimuth of a column, and of the elevation of a row; `offset` is the place within a pixel.
+/// Returns (cos, sin) of the azimuth of a column, or of the elevation of a row. `offset` is the position within the
+/// pixel.
 [[nodiscard]] inline glm::dvec2 azimuth_of(const Panorama& camera, int x, int offset) {
   const std::int64_t w = camera.width, at = std::int64_t(x) * 256 + offset;
   return turn(2 * at - 256 * w, 512 * w);
@@ -82,7 +83,7 @@ struct PixelPlace {
   return camera.directions[std::size_t(at.x)];
 }
 
-/// Directions of all pixels of a grid, at one place within each pixel.
+/// Directions of all pixels of a grid, at one position within each pixel.
 template <class Model>
 class GridDirections {
  public:
@@ -94,8 +95,8 @@ class GridDirections {
   glm::ivec2 offset_;
 };
 
-/// Directions for grids whose columns are azimuths and whose rows are elevations. Azimuths and elevations are computed
-/// once: the same bits, in a tenth of the time.
+/// Directions for grids whose columns are azimuths and whose rows are elevations. Each azimuth and each elevation is
+/// computed once, which gives the same bits in a tenth of the time.
 template <class Model>
 class TurnedDirections {
  public:

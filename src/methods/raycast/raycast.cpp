@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray casting: tiles of rays, on all threads, and then the rays that ended in holes.
+// Ray casting: casts tiles of rays on all threads, and then casts the rays that ended in holes again.
 //
-// A picture is cast in tiles of 32 x 32 pixels. A part is a few neighbouring tiles, so that threads share the nodes
-// that they fetch. The RayCaster keeps planes and scratch memory from picture to picture.
+// A picture is cast in tiles of 32 x 32 pixels. A thread casts a few neighbouring tiles at a time, because neighbours
+// visit the same nodes. The RayCaster keeps planes and scratch memory from picture to picture.
 
 #include "frontmost/raycast.h"
 
@@ -23,7 +23,8 @@ namespace {
 
 using namespace raycast_detail;
 
-/// The greatest |position - eye| in the tree, by axis, which bounds the rounding of a box's distance to a plane.
+/// Returns the greatest |position - eye| in the tree for each axis, which bounds the rounding of a box's distance to a
+/// plane.
 glm::vec3 reach_of(const Box& bounds, const ScreenTransform& t) {
   if (bounds.is_empty()) return glm::vec3(0);
   const glm::vec3 eye(t.eye[0], t.eye[1], t.eye[2]);
@@ -41,10 +42,10 @@ struct Nearest {
   float key = 0;
 };
 
-/// Passes the holes of one view, ray by ray, by the definition of sample_rule.h; used by one thread. Going on from the
-/// hole would need the ray's place there, which is rounded. So the ray begins at the eye again and leaves out every hit
-/// that is a hole. The nearest hit that remains is by definition the visible one. Boxes are met in doubles, padded by
-/// more than the rounding of a vertex's place.
+/// Casts rays of one view through holes, one ray at a time, by the definition of sample_rule.h. Serves one thread. A
+/// ray that continued from a hole would start at a rounded position. So the ray begins at the eye again and leaves out
+/// every hit that lies in a hole. The nearest hit that remains is by definition the visible one. Boxes are tested in
+/// doubles, padded by more than the rounding of a vertex's position.
 class HolePasser {
  public:
   HolePasser(const RayTree& tree, const View& view)
@@ -65,7 +66,7 @@ class HolePasser {
     return cutout_->is_hole(place.x, place.y);
   }
 
-  /// The nearest hit that is not a hole.
+  /// Returns the nearest hit that does not lie in a hole.
   [[nodiscard]] Nearest look(const SamplePlace& place) {
     const glm::dvec3 at = rays_.at(double(place.x) / kSubPixels, double(place.y) / kSubPixels);
     start_ = rays_.is_parallel() ? at : glm::dvec3(0);
@@ -91,7 +92,8 @@ class HolePasser {
     std::uint32_t child;
   };
 
-  /// Pushes children so that the nearest is taken first: its triangles hide most of the others.
+  /// Pushes the children that the ray enters. The nearest child is popped first, because its triangles hide most of the
+  /// others.
   void look_into(const RayNode& node) {
     const std::size_t others = waiting_.size();
     for (std::uint32_t i = 0; i < node.count; ++i) {
@@ -103,21 +105,23 @@ class HolePasser {
               [](const Waiting& a, const Waiting& b) { return a.enter > b.enter; });
   }
 
-  /// Whether everything from `enter` on is behind the nearest hit so far.
+  /// Returns whether everything from the distance `enter` on is behind the nearest hit so far.
   [[nodiscard]] bool is_behind(double enter) const {
     return !(enter <= transform_.near || key_of_distance(transform_, enter) * (1 + 0x1p-20f) >= nearest_.key);
   }
 
-  /// Where the ray enters a box, which is relative to the eye, between the planes. None if the ray misses the box, or
-  /// if the box is behind the nearest hit so far. Distances are along the viewing axis.
+  /// Returns the distance at which the ray enters a box between the near and far planes; none if the ray misses the
+  /// box, or if the box is behind the nearest hit so far. The box is relative to the eye. Distances are along the
+  /// viewing axis.
   [[nodiscard]] std::optional<double> entry(const glm::dvec3& low, const glm::dvec3& high) const {
     const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high));
     const double pad = 0x1p-17 * std::max({far.x, far.y, far.z});
-    if (!std::isfinite(pad)) return transform_.near;  // a box beyond the range of floats says nothing
+    if (!std::isfinite(pad)) return transform_.near;  // a box that reaches beyond the range of floats is visited
     double enter = transform_.near - pad, leave = transform_.far + pad;
     for (int axis = 0; axis < 3; ++axis) {
       const double a = low[axis] - pad - start_[axis], b = high[axis] + pad - start_[axis], d = direction_[axis];
-      // The ray lies between the two planes everywhere or nowhere: the division below would give NaN on one of them.
+      // The ray lies between the two planes everywhere or nowhere. The division below would give NaN if it lies in one
+      // of them.
       if (d == 0) {
         if (a > 0 || b < 0) return std::nullopt;
         continue;
@@ -137,7 +141,7 @@ class HolePasser {
   void meet(const SampleTriangle& triangle, PrimitiveId id, const SamplePlace& place) {
     const float sx = float(place.x - transform_.centre_x), sy = float(place.y - transform_.centre_y);
     if (!keeps(facing_, id, facing(transform_, triangle.corners, sx, sy))) return;
-    // The tile is part of the definition of a key (sample_rule.h).
+    // By definition, the key depends on the tile (sample_rule.h).
     const auto tile_centre = [](int pixel, std::int32_t image_centre) {
       return float((pixel / kTileSize * kTileSize + kTileSize / 2) * kSubPixels - image_centre);
     };
@@ -160,13 +164,14 @@ class HolePasser {
   PrimitiveId id_ = no_primitive;  ///< triangle of cutout_
   std::optional<ScreenCutout> cutout_;
   // State of the current ray.
-  glm::dvec3 start_{0}, direction_{0};  ///< from the eye; one unit along the viewing axis
+  glm::dvec3 start_{0}, direction_{0};  ///< start relative to the eye; direction with length 1 along the viewing axis
   Nearest nearest_;
   std::vector<Waiting> waiting_;
 };
 
-/// For a Visible that takes triangles with holes for whole: a triangle with a hole at the sample is replaced by the
-/// next hit of its ray. O(samples), and O(log n) and more for each ray that goes on.
+/// Completes a Visible that was cast as if no triangle had holes. At each sample that looks into a hole, the triangle
+/// is replaced by the nearest hit that does not lie in a hole. O(samples), and at least O(log n) for each ray that is
+/// cast again.
 void pass_holes(const RayTree& tree, Visible& visible, const Execution& execution) {
   if (!tree.cutouts) return;
   const View& view = visible.view;
@@ -198,7 +203,7 @@ struct RayCaster::State {
   /// Makes planes for the view, or keeps the last ones if they fit. \returns true if their memory was used before.
   bool prepare_planes(const View& view) {
     const bool fits = visible.primitives.size() == view.sample_count();
-    // If memory suffices for one plane only, neither may stay, as `fits` looks at one alone.
+    // If memory suffices for one plane only, neither may stay, because `fits` tests one plane alone.
     if (!fits) {
       visible = {};
       visible = {view, Buffer<PrimitiveId>(view.sample_count()), Buffer<float>(view.sample_count())};
@@ -232,8 +237,8 @@ const Visible& RayCaster::draw(const RayIndex& index, const View& view, const Ex
   const int tiles_x = (view.width + kTileSize - 1) / kTileSize, tiles_y = (view.height + kTileSize - 1) / kTileSize;
   const std::size_t tiles = std::size_t(tiles_x) * std::size_t(tiles_y);
   std::atomic<std::size_t> done{0};
-  // A part has several tiles: tiles of 32 pixels are so small that threads would wait for each other, and neighbours
-  // share the contents of the caches.
+  // A thread casts several tiles at a time. Single tiles of 32 pixels are so small that threads would wait for each
+  // other, and neighbouring tiles share the contents of the caches.
   constexpr std::size_t kTilesPerPart = 4;
   parallel_for(execution, tiles, kTilesPerPart, [&](std::size_t begin, std::size_t end) {
     const auto scratch = state_->scratches.borrow([] { return std::make_unique<RayTileScratch>(); });

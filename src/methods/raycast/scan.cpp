@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras that only rays can serve; and scans: the rays of a camera, cast over its grid in packets of neighbours.
+// Ray cameras, for views that only rays can serve. A scan casts the rays of such a camera in packets of neighbours.
 //
 //     wide grid, rows close together      The columns and rows of a packet make it look as nearly square as possible,
 //     +----------------+                  so that its rays spread as little as possible: a scanner whose rings lie far
@@ -79,7 +79,7 @@ glm::ivec2 grid_of(const RayPattern& camera) { return {int(camera.directions.siz
 
 constexpr std::size_t kRaysPerPart = 4096;
 
-/// Calls visit(first, rays) for the rays of every part of the grid, sample by sample, on all threads.
+/// Calls visit(index of the first ray, rays) for the rays of every part of the grid, sample by sample, on all threads.
 template <class Model, class Visit>
 void for_each_part(const RangeScan& scan, const Model& model, const Execution& execution, const Visit& visit) {
   const RayPose pose(scan.camera.world_from_eye);
@@ -98,7 +98,7 @@ void for_each_part(const RangeScan& scan, const Model& model, const Execution& e
   }
 }
 
-/// The columns and rows of the packet that looks most nearly square in the middle of the grid.
+/// Returns the columns and rows of the packet that looks most nearly square in the middle of the grid.
 template <class Model>
 glm::ivec2 packet_shape(const RangeScan& scan, const GridDirections<Model>& directions) {
   const int x = scan.width / 2, y = scan.height / 2;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Culling of clusters, a vector of clusters at a time: by the frustum, over the eight corners of their boxes, and by
-// facing.
+// Culls clusters, a vector of clusters at a time: by the frustum, against which the eight corners of their boxes are
+// tested, and by facing.
 //
 // Boxes are stored as columns, so a vector of clusters is tested at once. The same eight corners also give the pixel
 // rectangle and the nearest key, by which clusters are ordered and binned afterwards.
@@ -20,22 +20,23 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using namespace frontmost::HWY_NAMESPACE;
 
-// A vertex and its box are transformed by the same formula, but round differently. Relative to the sum of the absolute
-// values of all terms, either errs by less than 6 * 2^-24. This bound is four times the sum of both errors.
+// A vertex and its box are transformed by the same formula, but round differently. Each of the two errors is less than
+// 6 * 2^-24 of the sum of the absolute values of all terms. This bound is four times the sum of both errors.
 constexpr float kRoundingBound = 48.0f / 16777216.0f;
 
-/// One row of the transform. `offset_terms` is the sum of the absolute values of the terms of the offset.
+/// One row of the transform. `offset_terms` is what the offset adds to the sum that kRoundingBound is relative to.
 struct RowTerms {
   float a, b, c, offset, offset_terms;
 };
 
-/// The part of the eye that a float cannot hold. No float, hence no vertex, is nearer to the eye in any coordinate.
+/// Returns the eye's position minus this position rounded to floats. No float is nearer to the eye in any coordinate
+/// than the rounded position, so no vertex is.
 glm::vec3 RestOfEye(const ScreenTransform& t, const View& view) {
   return glm::vec3(view.eye() - glm::dvec3(t.eye[0], t.eye[1], t.eye[2]));
 }
 
-/// Makes a row. The rest of the eye went through the row in doubles and was rounded with the offset: twice its terms
-/// bound both errors.
+/// Makes a row. The offset includes the rest of the eye, which was multiplied by the row in doubles and then rounded.
+/// Twice the absolute terms of this product bound both errors.
 RowTerms MakeRow(const std::array<float, 3>& row, float offset, const glm::vec3& rest) {
   const glm::vec3 terms = glm::abs(glm::vec3(row[0], row[1], row[2]) * rest);
   const float sum = terms.x + terms.y + terms.z;
@@ -63,8 +64,9 @@ HWY_INLINE VF Margin(const RowTerms& row, const Reach& reach) {
   return hn::Mul(hn::Set(d, kRoundingBound), hn::Add(hn::Add(x, y), hn::Add(z, w)));
 }
 
-/// Pixel of a coordinate from the image's centre in 1/256 pixel, clamped to [0, last]. The coordinate is limited before
-/// conversion, as floats beyond the range of integers convert to different values on different machines.
+/// Returns the pixel of a coordinate, clamped to [0, last]. The coordinate is in 1/256 pixel from the image's centre.
+/// It is limited before conversion, because floats beyond the range of integers convert to different values on
+/// different machines.
 HWY_INLINE hn::Vec<DI> ToPixel(VF from_centre, std::int32_t centre, std::int32_t last) {
   const DF d;
   const VF limit = hn::Set(d, float(kGuardBand));
@@ -74,34 +76,38 @@ HWY_INLINE hn::Vec<DI> ToPixel(VF from_centre, std::int32_t centre, std::int32_t
   return hn::Min(hn::Max(hn::ShiftRight<8>(fixed), hn::Zero(di)), hn::Set(di, last));
 }
 
-// Facing. The sign of the area of the snapped triangle decides, and snapping can turn a triangle over. It cannot if
-// every vertex moves by at most e and no altitude of the triangle on the screen is less than 2 e: to turn over, the
-// vertices would have to pass through a line that is within e of all three.
+// The sign of the area of the snapped triangle decides its facing, and snapping can turn a triangle over. Snapping
+// cannot do so if it moves every vertex by at most e, and no altitude of the triangle on the screen is less than 2 e.
+// This is because a triangle turns over only when its vertices pass through one line, and that line is within e of all
+// three.
 //
 // How high is the triangle on the screen? Take a triangle with normal N (|N| is twice its area), vertices P, Q, R, the
 // eye at E, and f the lesser of the scales of x and y, in snapped units per unit at distance 1. W(P) is the planar
-// distance of P. Twice the area on the screen, scaled alike both ways, is f^2 |N.(P-E)| / (W(P) W(Q) W(R)). The edge PQ
+// distance of P. If x and y are both scaled by f, twice the area on the screen is f^2 |N.(P-E)| / (W(P) W(Q) W(R)). The
+// edge PQ
 // becomes f |(P-E) W(Q) - (Q-E) W(P)| / (W(P) W(Q)) long. The numerator, a cross product of the axis and (P-E)x(Q-E),
 // is at most f |P-E| |PQ|. Hence the altitude on the image of PQ is at least
 //     f |N.(P-E)| / (|PQ| |P-E| W(R))  >=  f * altitude * sine / W,
-// where `altitude` is the triangle's least in space, `sine` belongs to the angle between its plane and the ray to P,
-// and W is the greatest planar distance. A greater scale in one direction makes nothing thinner. Parallel projection
-// has the same bound with W = 1 and the axis for the ray.
+// where `altitude` is the triangle's least altitude in space, `sine` is the sine of the angle between its plane and the
+// ray to P, and W is the greatest planar distance. A greater scale in one direction makes no triangle thinner. Parallel
+// projection has the same bound with W = 1 and the axis for the ray.
 //
-// Over a cluster: for p in the box and the cone's axis A, the minimum m of A.(p-E) is taken at a corner. With |p-E| <=
-// R, all rays make an angle of cosine at least m/R with A. A normal may lean by the cone's half angle from A, so its
-// cosine to the ray, the sine above, is at least cos m/R - sin sqrt(1 - (m/R)^2).
+// For all triangles of a cluster: let A be the cone's axis, and c and s the cosine and sine of the cone's half angle.
+// Over all points p of the box, A.(p-E) takes its minimum m at a corner. With |p-E| <= R, all rays make an angle of
+// cosine at least m/R with A. A normal deviates from A by at most the half angle. So the cosine between normal and ray,
+// which is the sine above, is at least c m/R - s sqrt(1 - (m/R)^2).
 //
-// Margins: that cosine may be less by kFacingRounding, the sum of kConeRounding and the rounding here (a few 2^-24).
-// The vertex error is at most the padding of the pixel rectangle, which counts snapping twice and rounding four times.
-// This leaves a factor of two for poses that are a rotation only to 1e-4.
+// Rounding may lower that cosine by kFacingRounding, the sum of kConeRounding and the rounding here (a few 2^-24). The
+// vertex error is at most the padding of the pixel rectangle, which counts snapping twice and rounding four times. This
+// leaves a factor of two for poses whose matrix is a rotation only to 1e-4.
 constexpr float kFacingRounding = kConeRounding + 1.0f / 1024.0f;
 
-/// The rays to the points of a box, and the altitude on the screen that facing needs.
+/// The rays from the eye to the points of a box, and the size that a triangle needs so that snapping and rounding
+/// cannot turn it over.
 struct Rays {
   CullVector low, high;  // range of p - E over the box; in parallel projection both are the axis
   VF farthest;           // upper bound of |p - E|
-  VF needed;             // least altitude * sine
+  VF needed;             // a triangle with a greater altitude * sine is not turned over
 };
 
 class FacingCull {
@@ -109,7 +115,7 @@ class FacingCull {
   FacingCull(const ConeArrays& cones, Culling culling)
       : cones_(cones), sign_(culling == Culling::front ? -1.0f : 1.0f) {}
 
-  /// Clusters of which no triangle faces the visible side. NaN compares false, which keeps the cluster.
+  /// Returns the clusters whose triangles all face away and are culled. NaN compares false, which keeps the cluster.
   [[nodiscard]] HWY_INLINE MF TurnedAway(std::size_t i, const Rays& rays) const {
     const DF d;
     const VF sign = hn::Set(d, sign_), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
@@ -164,7 +170,7 @@ class Cull {
   }
 
  private:
-  /// Lower and upper sides of the boxes, relative to the eye as a float.
+  /// Lower and upper sides of the boxes, relative to the eye rounded to floats.
   struct Offsets {
     VF x[2], y[2], z[2];
   };
@@ -172,7 +178,8 @@ class Cull {
   struct Margins {
     VF x, y, d, w;
   };
-  /// Over the corners: D, with its margin; the greatest signed distance to each side of the frustum; X/W and Y/W.
+  /// Extremes over the eight corners: of D, with its margin added; of the signed distance to each side of the frustum
+  /// (the greatest, positive inside); of X/W and Y/W.
   struct Extent {
     VF nearest, farthest;
     VF left, right, top, bottom;
@@ -216,8 +223,8 @@ class Cull {
       e.right = hn::Max(e.right, hn::Sub(wx, x));
       e.top = hn::Max(e.top, hn::Add(wy, y));
       e.bottom = hn::Max(e.bottom, hn::Sub(wy, y));
-      // Meaningless for corners that are not before the eye; Whole() then fails on `nearest`, and the values are not
-      // used.
+      // These values are meaningless for corners that are not in front of the eye. Whole() then fails because of
+      // `nearest`, so the values are not used.
       const VF inverse = hn::Div(hn::Set(d, 1.0f), w);
       const VF sx = hn::Mul(x, inverse), sy = hn::Mul(y, inverse);
       e.x_min = hn::Min(e.x_min, sx);
@@ -230,12 +237,13 @@ class Cull {
     return e;
   }
 
-  /// Boxes outside of one side strictly, and by more than rounding can explain. NaN compares false, which keeps the
-  /// cluster.
+  /// Returns the boxes that lie outside one side of the frustum by more than rounding can explain. NaN compares false,
+  /// which keeps the cluster.
   [[nodiscard]] HWY_INLINE MF Outside(const Extent& e, const Margins& margin) const {
     const DF d;
     const VF half_x = hn::Set(d, float(t.centre_x)), half_y = hn::Set(d, float(t.centre_y));
-    // One pixel more on every side: samples sit inside pixels, and snapping moves by half a unit.
+    // Two pixels of margin on every side suffice, because samples lie inside pixels and snapping moves a vertex by half
+    // a unit.
     const VF two_pixels = hn::Set(d, 2.0f * kSubPixels);
     const VF pixel = t.orthographic ? two_pixels : hn::Mul(two_pixels, hn::Abs(e.farthest));
     const VF x_limit = hn::Neg(hn::Add(hn::Add(margin.x, hn::Mul(half_x, margin.w)), pixel));
@@ -256,7 +264,7 @@ class Cull {
             pad(hn::Max(hn::Abs(e.y_min), hn::Abs(e.y_max)), margin.y), inverse};
   }
 
-  /// Boxes between the planes and within the guard band, margins included.
+  /// Returns the boxes between the near and far planes and within the guard band, margins included.
   [[nodiscard]] HWY_INLINE MF Whole(const Extent& e, const Pads& pad) const {
     const DF d;
     const VF guard = hn::Set(d, float(kGuardBand));
@@ -265,7 +273,7 @@ class Cull {
     return hn::And(between, hn::And(hn::Lt(hn::Add(x_most, pad.x), guard), hn::Lt(hn::Add(y_most, pad.y), guard)));
   }
 
-  /// Stores the pixel rectangle and the nearest key. No key is greater than that of the nearest distance, but for
+  /// Stores the pixel rectangle and the nearest key, which is the key of the nearest distance with a margin for
   /// rounding.
   HWY_INLINE void StorePlace(std::size_t i, const Extent& e, const Pads& pad, CullResult& out) const {
     const DF d;

@@ -4,8 +4,8 @@
 //    clusters --cull--> whole ------ order by 32 slices of depth ------> cluster lists --+
 //                   +-> apart ------ triangles, clipped: records ------> record lists ---+--> a TileJob for each tile
 //
-// Both lists of a tile are nearest first, with cutouts behind all solid items. The picture never depends on this order;
-// the order makes the hierarchical depth hide later items.
+// In both lists of a tile the nearest item comes first, and cutouts come after all solid items. The picture never
+// depends on this order; the order makes the hierarchical depth hide later items.
 #pragma once
 
 #include <span>
@@ -18,19 +18,19 @@
 
 namespace frontmost::zbuffer_detail {
 
-/// A cluster is left out where all eight corners of its box lie outside of one side of the frustum, or where its cone
-/// of normals says that every triangle faces away. Clusters that floats cannot decide are kept.
+/// A cluster is culled if all eight corners of its box lie outside one side of the frustum, or if its cone of normals
+/// shows that every triangle faces away. It is kept if rounding leaves either test undecided.
 enum class ClusterFate : std::uint8_t {
   culled,  ///< no sample can see it
   whole,   ///< every vertex can be snapped as it is
-  apart,   ///< some triangle may need clipping: taken apart
+  apart,   ///< drawn as single triangles: some may need clipping, or the cluster is on many tiles
 };
 
-/// One entry a cluster, padded to whole vectors. `rect` and `nearest` are valid if the fate is `whole`.
+/// Columns with one entry a cluster, padded to whole vectors. `rect` and `nearest` are valid if the fate is `whole`.
 struct CullResult {
   std::vector<std::uint8_t> fate;  ///< ClusterFate
   std::vector<std::int32_t> x0, y0, x1, y1;
-  std::vector<float> nearest;  ///< no key of the cluster is greater
+  std::vector<float> nearest;  ///< upper bound of the cluster's keys
 
   void resize(std::size_t cluster_count) {
     const std::size_t padded = (cluster_count + Cluster::lanes - 1) / Cluster::lanes * Cluster::lanes;
@@ -45,7 +45,7 @@ struct CullResult {
 /// The clusters, and the view that they are tested against.
 struct CullInput {
   const BoxArrays& boxes;
-  const ConeArrays* cones;  ///< null: facing culls triangles only
+  const ConeArrays* cones;  ///< null if facing culls single triangles only
   const ScreenTransform& transform;
   const View& view;
 };
@@ -70,7 +70,7 @@ struct FrameInput : Picture {
 
 /// One tile, and the records and clusters that may be seen in it.
 struct TileJob : Tile {
-  /// Nearest first.
+  /// Indices of records and of clusters, nearest first.
   struct Items {
     std::span<const std::uint32_t> records, clusters;
 
@@ -87,16 +87,16 @@ void draw_tile(const FrameInput& frame, const TileJob& job, TileScratch& scratch
 /// The plan of a frame. Planning the next frame reuses its memory.
 class FramePlan {
  public:
-  /// Culls clusters, takes some apart, orders and bins the rest. O(clusters + pairs of large triangle and tile) time.
-  /// Memory: about 30 bytes a cluster, 64 more if drawn whole, 100 a large or clipped triangle, and the lists of one
-  /// round.
+  /// Culls clusters, takes some apart into records, and sorts the others by depth and into tiles. Time: O(clusters +
+  /// pairs of large triangle and tile). Memory: about 30 bytes a cluster, 64 bytes more for a cluster that is drawn
+  /// whole, 100 bytes for each large or clipped triangle, and the lists of one round.
   void make(const ClusterSet& set, const PlaceTarget& target, const Execution& execution,
             std::size_t most_record_items = kMostRecordItems);
 
   [[nodiscard]] const CullResult& culled() const { return culled_; }
   [[nodiscard]] RecordLists& records() { return records_; }
 
-  /// Precondition: `tile` belongs to the round of records listed last.
+  /// \returns the items of a tile. Precondition: `tile` belongs to the round of records that was listed last.
   [[nodiscard]] TileJob job(std::size_t tile, const View& view) const;
 
  private:
@@ -106,13 +106,13 @@ class FramePlan {
   void list_clusters(const View& view);
 
   CullResult culled_;
-  std::int64_t frames_by_facing_ = 0;  // frames of last_set_ that leave front or back faces out
+  std::int64_t frames_by_facing_ = 0;  // frames of last_set_ so far in which front or back faces were culled
   std::weak_ptr<const void> last_set_;
   std::vector<std::uint32_t> apart_;                      // clusters to be taken apart
   std::vector<std::vector<TriangleRecord>> apart_parts_;  // records of each chunk of apart_
   RecordLists records_;
-  std::size_t first_cutout_ = 0;      // first of the set's clusters that has holes
-  std::vector<std::uint32_t> order_;  // clusters drawn whole, cutouts behind all others, nearer slices first
+  std::size_t first_cutout_ = 0;      // index of the set's first cluster with holes
+  std::vector<std::uint32_t> order_;  // clusters drawn whole: solid ones, then cutouts, each with nearer slices first
   TileLists cluster_lists_;
 };
 

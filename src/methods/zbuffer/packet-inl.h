@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packets: as many triangles at once as the vector has lanes, in the form that all ways to draw them share.
+// Packets of triangles, in the form that all paths of drawing share.
 //
 //    lane        0     1     2    ...           A packet is as many triangles as the vector has lanes. Edges and key
 //    edge 0      e0    e0    e0                 planes are set up for all at once, and then all are walked in step: in
-//    edge 1      e1    e1    e1                 step k each lane asks about the k-th pixel of its own rectangle.
+//    edge 1      e1    e1    e1                 step k each lane tests the k-th pixel of its own rectangle.
 //    key plane   k     k     k
 
 // Included once for every target.
@@ -42,7 +42,7 @@ HWY_INLINE VI LookUp64(const std::int32_t* table, VI number) {
   return VI{_mm512_mask_blend_epi32(_mm512_test_epi32_mask(number.raw, _mm512_set1_epi32(32)), low, high)};
 }
 #else
-/// The entries of an aligned table of 64.
+/// Returns the entries of an aligned table of 64 at the indices `number`.
 HWY_INLINE VI LookUp64(const std::int32_t* table, VI number) { return hn::GatherIndex(DI(), table, number); }
 #endif
 
@@ -91,16 +91,17 @@ HWY_INLINE Winding WindingOf(const FacingRule& facing, const Corners (&corners)[
 
 HWY_INLINE MI AllLanes() { return hn::Eq(hn::Zero(DI()), hn::Zero(DI())); }
 
-/// The triangles of a packet that may cover a sample, so oriented that their areas are positive.
+/// The triangles of a packet that may cover a sample. The order of their vertices makes their areas positive.
 struct PlacedPacket {
   MI kept;
   const Corners corners[3];
   PixelRange columns, rows;
 };
 
-/// Finds the `live` triangles that may cover a sample, and passes them to `sink`. ColumnsOf(range) and RowsOf(range) of
-/// the sink give the pixels that samples within the bounds belong to; Ids() gives ids. PutLarge(mask) takes triangles
-/// with vertices farther apart than kSmallExtent, neither oriented nor culled; PutSmall(placed) takes all others.
+/// Finds which `live` triangles may cover a sample, and passes them to `sink`. The sink's ColumnsOf(range) and
+/// RowsOf(range) return the pixels that have a sample within a range of coordinates, and Ids() returns the ids.
+/// PutLarge(mask) receives the triangles with vertices farther apart than kSmallExtent, not yet oriented or culled.
+/// PutSmall(placed) receives all others.
 template <class Sink>
 HWY_INLINE void SortOut(const Corners (&c)[3], MI live, const FacingRule& facing, Sink& sink) {
   const DI d;
@@ -120,7 +121,8 @@ HWY_INLINE void SortOut(const Corners (&c)[3], MI live, const FacingRule& facing
   sink.PutSmall({keep, {c[0], Chosen(winding.front, c[2], c[1]), Chosen(winding.front, c[1], c[2])}, columns, rows});
 }
 
-/// Three edges and a key plane for each triangle. Vertices are no farther apart than kSmallExtent, areas positive.
+/// Three edges and a key plane for each triangle. Vertices are no farther apart than kSmallExtent, and areas are
+/// positive.
 struct Packet : KeyPlanes {
   VI x[3], y[3];  // vertices
   CoordinateRange columns, rows;
@@ -145,7 +147,7 @@ HWY_INLINE void SetUpPacket(Packet& b, const VF (&key)[3]) {
 }
 
 /// Edge values at the samples (sx, sy) within the triangles' boxes. A sample is covered if no value is negative. From
-/// pixel to pixel the values grow by -dy and dx.
+/// pixel to pixel the values grow by -dy in x and by dx in y.
 struct PacketEdges {
   VI e[3];
 };
@@ -159,25 +161,25 @@ HWY_INLINE PacketEdges EdgesAt(const Packet& b, VI sx, VI sy) {
   return at;
 }
 
-/// Reads the triangles of a batch that lie in one tile, a packet at a time and in their order, which the depth buffer
-/// needs:
+/// Reads those triangles of a batch that lie in one tile, a packet at a time. Triangles keep their order, because the
+/// depth buffer needs it:
 ///
 ///    run of 20, vectors of 16    [ whole vector as it stands ][4 numbers wait]
 ///    next run of 7               [4 + 7 numbers wait]
 ///    next run of 9               [16 numbers: gathered together][4 wait]
 ///
 /// Calls visit(count, fetch) for packets of `count` triangles. fetch(tag, column) reads a vector of a column of
-/// BatchColumns; lanes behind the last triangle repeat the first.
+/// BatchColumns; the lanes after the last triangle repeat the first triangle of the packet.
 class RunReader {
  public:
-  /// Reads whole vectors of a run directly. Gathers the rest together with the rest of other runs, once it fills a
-  /// vector.
+  /// Reads whole vectors of a run directly if no triangles wait. All other triangles wait until they fill a vector,
+  /// together with triangles of other runs, and are then gathered.
   template <class Visit>
   HWY_INLINE void Read(const TileRun& run, const Visit& visit) {
     const DI d;
     std::size_t i = run.first;
     const std::size_t end = i + run.count;
-    if (run.count == 1) {  // most runs are this short if triangles are strewn
+    if (run.count == 1) {  // most runs are this short if triangles are scattered
       numbers_[pending_++] = std::int32_t(i);
       if (pending_ == hn::Lanes(d)) Finish(visit);
       return;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Setup of single triangles, for clusters that cannot be drawn as a whole, and lists of them by tile.
+// Setup of single triangles, for clusters that cannot be drawn as a whole, and the lists of these triangles by tile.
 //
-// Triangles are transformed and clipped one after the other. Clipping leaves a fan of triangles, whose inner edges the
-// top-left rule covers once. Snapping, culling and keys equal those of the kernels to the bit.
+// Triangles are transformed and clipped one after the other. Clipping leaves a fan of triangles, and the top-left rule
+// gives each sample on an inner edge to one of them. Snapping, culling and keys equal those of the kernels to the bit.
 
 #include "zbuffer/triangle_records.h"
 
@@ -26,11 +26,11 @@ class SnappedCluster {
     }
   }
 
-  /// One of the cluster's triangles, clipped where it cannot be snapped whole.
+  /// Returns one of the cluster's triangles, clipped if one of its vertices cannot be snapped.
   [[nodiscard]] ClippedPolygon polygon(std::size_t triangle) const {
     const std::size_t c = cluster_.first_triangle + triangle;
     const std::size_t a = set_.i0[c], b = set_.i1[c], d = set_.i2[c];
-    // Padding, or a triangle with a vertex that is not finite: build_clusters() stores equal vertices for either.
+    // build_clusters() stores equal vertices for padding, and for a triangle with a vertex that is not finite.
     if (a == b || b == d || a == d) return {};
     if (!is_plain_[a] || !is_plain_[b] || !is_plain_[d])
       return clip_triangle(transform_, {position(a), position(b), position(d)});
@@ -59,7 +59,7 @@ auto place_of(const TriangleRecord& r) {
   return std::tie(r.x[0], r.y[0], r.x[1], r.y[1], r.x[2], r.y[2], r.key[0], r.key[1], r.key[2]);
 }
 
-/// True if `a` is nearer. Records with the same vertices follow each other, the lower id first.
+/// True if `a` comes first: if it is nearer. Records with the same vertices follow each other, the lower id first.
 bool comes_before(const TriangleRecord& a, const TriangleRecord& b) {
   if (a.nearest() != b.nearest()) return a.nearest() > b.nearest();
   return std::tuple_cat(place_of(a), std::tie(a.id)) < std::tuple_cat(place_of(b), std::tie(b.id));
@@ -120,8 +120,9 @@ bool misses(const TriangleRecord& r, const PixelRect& rect) {
   for (int a = 0; a < 3; ++a) {
     const int b = (a + 1) % 3;
     const std::int64_t dx = r.x[b] - r.x[a], dy = r.y[b] - r.y[a];
-    // The corner of the rectangle that lies deepest inside the edge, one past the last pixel, as samples lie within [0,
-    // 256) of theirs. Without the top-left bias the test is a little too generous, which only costs time.
+    // (x, y) is the corner of the rectangle that lies deepest inside the edge. Upper bounds are one past the last
+    // pixel, because samples lie within [0, 256) of their pixels. The test leaves out the top-left bias, so it may keep
+    // a rectangle that has no covered sample, which only costs time.
     const std::int64_t x = dy < 0 ? (std::int64_t(rect.x1) + 1) * kSubPixels : std::int64_t(rect.x0) * kSubPixels;
     const std::int64_t y = dx > 0 ? (std::int64_t(rect.y1) + 1) * kSubPixels : std::int64_t(rect.y0) * kSubPixels;
     if (dx * (y - r.y[a]) - dy * (x - r.x[a]) < 0) return true;
@@ -136,8 +137,8 @@ void RecordLists::plan(const View& view, const Cutouts* cutouts, std::size_t mos
   // hide.
   std::sort(records.begin(), first_cutout, comes_before);
   std::sort(first_cutout, records.end(), comes_before);
-  // The lower id hides a copy of itself everywhere, unless it has holes. A few bytes of glTF make a million copies of
-  // one triangle.
+  // A solid triangle hides all its copies with higher ids. Copies matter because a few bytes of glTF make a million
+  // copies of one triangle.
   first_cutout = records.erase(std::unique(records.begin(), first_cutout, is_at_one_place), first_cutout);
   first_cutout_ = std::size_t(first_cutout - records.begin());
   split_into_rounds(view, most_items);
@@ -148,11 +149,12 @@ void RecordLists::list(const TileRange& round, const View& view) {
               [&](std::size_t i, const auto& add) { visit_tiles(records[i], view, round, add); });
 }
 
-/// Splits the tiles into rounds whose lists hold at most `most_items` together, or a single tile.
+/// Splits the tiles into rounds. The lists of a round hold at most `most_items` together, unless the round is a single
+/// tile.
 void RecordLists::split_into_rounds(const View& view, std::size_t most_items) {
   const TileRange all{0, Tile::count(view)};
   rounds_.assign(1, all);
-  // The bound holds even if every record is in every tile: counting is not needed.
+  // Tiles need not be counted if the bound holds even with every record in every tile.
   if (records.size() <= most_items / all.end) return;
   std::vector<std::uint32_t> counts(all.end, 0);
   for (const TriangleRecord& record : records)

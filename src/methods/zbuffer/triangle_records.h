@@ -20,8 +20,8 @@
 
 namespace frontmost::zbuffer_detail {
 
-/// A triangle on the screen, vertices in 1/256 pixel from some origin. The vertices are so ordered that the area is
-/// positive (clockwise to the eye, y being down).
+/// A triangle on the screen. Vertices are in 1/256 pixel, relative to an origin that the caller chooses. After
+/// orient(), the order of vertices makes the area positive (clockwise to the eye, because y is down).
 struct TriangleRecord {
   std::int32_t x[3], y[3];
   float key[3];
@@ -33,8 +33,8 @@ struct TriangleRecord {
 /// Edge functions at a tile's first sample, shifted right by 8, and their steps from pixel to pixel. A sample is
 /// covered if none of the three is negative. Left and top edges include their points.
 struct TriangleEdges {
-  // Over 127 pixels both ways a value changes by at most 2 * 127 * 2^22 < 2^30. A first value limited to `limit` keeps
-  // its sign, and its sums stay within 32 bits.
+  // Across 127 pixels in x and 127 in y, an edge value changes by at most 2 * 127 * 2^22 < 2^30. So a first value that
+  // is limited to `limit` gives the right sign at every sample, and all values fit 32 bits.
   static constexpr std::int64_t limit = std::int64_t(1) << 30;
 
   std::int32_t first[3], step_x[3], step_y[3];
@@ -70,7 +70,8 @@ struct PlaceTarget {
 /// Makes a record's area positive. \returns false if the record is culled, or has no area and so covers nothing.
 [[nodiscard]] bool orient(TriangleRecord& record, const FacingRule& facing);
 
-/// Appends the triangles of one cluster that may be seen, clipped where needed, vertices from the image's top left.
+/// Appends the triangles of one cluster that may be seen, clipped where needed. Their vertices are relative to the
+/// image's top left.
 void append_records(const PlaceTarget& target, const ClusterSet& set, const Cluster& cluster,
                     std::vector<TriangleRecord>& records);
 
@@ -81,13 +82,14 @@ void append_polygon(const PlaceTarget& target, const ClippedPolygon& polygon, Pr
 /// The pixels within the image whose samples a record may cover. Empty (x1 < x0 or y1 < y0) if there are none.
 [[nodiscard]] PixelRect pixel_rect(const TriangleRecord& record, int width, int height);
 
-/// The pixels that have a sample between a triangle's outermost coordinates. `low` and `high` are the least and
-/// greatest sample offsets. Most triangles smaller than a pixel have no such pixel, and cover nothing.
+/// The pixels that have a sample inside the triangle's bounding box. `low` and `high` are the least and greatest sample
+/// offsets. Most triangles smaller than a pixel have no such pixel, and cover nothing.
 [[nodiscard]] PixelRect sampled_rect(const TriangleRecord& record, const glm::ivec2& low, const glm::ivec2& high,
                                      int width, int height);
 
-/// Calls visit(record) for the triangles of a clipped polygon, vertices from the image's top left, not oriented yet.
-/// The triangles form a fan: the top-left rule covers its inner edges once.
+/// Calls visit(record) for the triangles of a clipped polygon, which are not oriented yet. Their vertices are relative
+/// to the image's top left.
+/// The triangles form a fan; the top-left rule gives each sample on an inner edge to one triangle.
 template <class Visit>
 void for_each_of_fan(const ClippedPolygon& polygon, const ScreenTransform& t, PrimitiveId id, const Visit& visit) {
   for (std::size_t k = 2; k < std::size_t(polygon.count); ++k) {
@@ -103,13 +105,14 @@ void for_each_of_fan(const ClippedPolygon& polygon, const ScreenTransform& t, Pr
   }
 }
 
-/// True if all samples of the rectangle's pixels lie outside one edge: a quick test by the rectangle's corners.
+/// True if the rectangle's corners show that all samples of its pixels lie outside one edge. This test is quick.
 [[nodiscard]] bool misses(const TriangleRecord& record, const PixelRect& rect);
 
 /// Calls visit(x, y) for the pixels of `rect` whose sample, `offset` from the pixel's corner, is covered.
 template <class Visit>
 void visit_covered(const TriangleRecord& r, const PixelRect& rect, const glm::ivec2& offset, const Visit& visit) {
-  // Exact: coordinates within the guard band have 22 bits, their differences 23, and a product and a sum of those 47.
+  // Edge values are exact in 64 bits: coordinates within the guard band have 22 bits, differences 23 bits, and sums of
+  // two products 47 bits.
   std::int64_t row[3], step_x[3], step_y[3];
   for (int k = 0; k < 3; ++k) {
     const int n = k == 2 ? 0 : k + 1;
@@ -133,21 +136,22 @@ void visit_covered(const TriangleRecord& r, const PixelRect& rect, const glm::iv
 /// The most items that the lists of one round hold (256 MiB), unless a single tile has more.
 inline constexpr std::size_t kMostRecordItems = std::size_t(1) << 26;
 
-/// Records, nearest first, and the tiles in which each may be seen. Planning the next frame reuses the memory. A large
-/// triangle is in many tiles, so its lists could grow without bound. Lists are therefore made round by round:
+/// The records of a frame, nearest first, and for each tile the list of records that may be seen in it. Planning the
+/// next frame reuses the memory. A large triangle is in the lists of many tiles, so the lists together could outgrow
+/// the memory. Lists are therefore made round by round:
 ///
 ///    round 0    tiles 0 ... 40      lists of at most 2^26 items together
 ///    round 1    tiles 41 ... 90     made when round 0 is drawn, in the same memory
 class RecordLists {
  public:
-  /// Filled by the caller before plan(); vertices from the image's top left.
+  /// The caller fills `records` before plan(). Vertices are relative to the image's top left.
   std::vector<TriangleRecord> records;
 
-  /// Sorts the records nearest first, cutouts behind all others, and finds the rounds. Among solid records with the
-  /// same vertices plan() keeps only the lowest id.
+  /// Sorts the records nearest first, cutouts after all others, and finds the rounds. Among solid records with the same
+  /// vertices plan() keeps only the one with the lowest id.
   void plan(const View& view, const Cutouts* cutouts, std::size_t most_items = kMostRecordItems);
-  /// The rounds in which tiles are drawn. An ordinary scene takes one round; a million triangles that each fill the
-  /// largest image make 16 thousand million pairs of record and tile.
+  /// The rounds in which tiles are drawn. An ordinary scene needs one round. A million triangles that each fill the
+  /// largest image need many, because they make 16 thousand million pairs of record and tile.
   [[nodiscard]] std::span<const TileRange> rounds() const { return rounds_; }
   /// Lists the records that may be seen in each tile of a round, and drops the lists of the round before.
   void list(const TileRange& round, const View& view);
@@ -164,7 +168,8 @@ class RecordLists {
   std::vector<TileRange> rounds_;
 };
 
-/// Calls draw(tile, scratch) for every tile once its records are listed; many tiles are drawn at the same time.
+/// Calls draw(tile, scratch) for every tile, after the tile's records are listed. Several threads draw tiles at once,
+/// each with its own scratch.
 template <class Draw>
 void draw_tiles(RecordLists& records, const View& view, const Execution& execution, Pool<TileScratch>& scratches,
                 const Draw& draw) {
@@ -178,7 +183,8 @@ void draw_tiles(RecordLists& records, const View& view, const Execution& executi
   }
 }
 
-/// Calls add(tile) for the tiles of `range` in which a record may be seen; vertices from the image's top left.
+/// Calls add(tile) for the tiles of `range` in which a record may be seen. Vertices are relative to the image's top
+/// left.
 template <class Add>
 void visit_tiles(const TriangleRecord& record, const View& view, const TileRange& range, const Add& add) {
   const PixelRect rect = pixel_rect(record, view.width, view.height);
@@ -191,8 +197,8 @@ void visit_tiles(const TriangleRecord& record, const View& view, const TileRange
       const std::size_t tile = std::size_t(y) * across + std::size_t(x);
       if (tile < range.begin || tile >= range.end) continue;
       const PixelRect pixels{x * kTileSize, y * kTileSize, (x + 1) * kTileSize - 1, (y + 1) * kTileSize - 1};
-      // With a single tile, pixel_rect() has already tested the outermost coordinates. A long diagonal triangle touches
-      // few tiles of its rectangle.
+      // A long diagonal triangle touches few tiles of its rectangle, so misses() tests each tile. A rectangle within
+      // one tile needs no such test.
       if (tiles.count() == 1 || !misses(record, pixels)) add(tile);
     }
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The z-buffer: plan the frame, then draw its tiles on all threads.
 //
-// Order only decides how much the hierarchical depth can hide, never the result. Whole clusters are ordered by 32
-// slices of depth and keep their memory order within a slice: a full sort hides no more and loses locality.
+// The order of drawing decides how much the hierarchical depth can hide, but never the result. Clusters that are drawn
+// whole are sorted into 32 slices of depth and keep their memory order within a slice, because a full sort hides no
+// more and loses locality.
 //
 // A ZBuffer keeps its planes, its plan and its scratch memory from frame to frame. Tiles that stay empty are not filled
 // again: `blank` tells which tiles of the planes hold nothing. If an error ends a frame, the tiles being drawn count as
@@ -27,7 +28,7 @@ namespace frontmost {
 namespace zbuffer_detail {
 namespace {
 
-// A cluster on more tiles than this is cheaper to take apart than to transform again for each tile.
+// A cluster on more tiles than this is taken apart, because transforming it again for each tile costs more.
 constexpr int kMaxTilesOfCluster = 16;
 constexpr std::size_t kSlices = 32;
 
@@ -47,7 +48,8 @@ void FramePlan::make(const ClusterSet& set, const PlaceTarget& target, const Exe
   const Culling culling = target.facing.culling();
   const ConeArrays* cones = nullptr;
   if (culling == Culling::back || culling == Culling::front) {
-    // Cones save between a fortieth and a half of their own cost in each frame, so they pay after some frames.
+    // In each frame, cones save between 1/40 and 1/2 of what making them costs, so they are made after some frames
+    // without.
     constexpr int kFramesWithout = 8;
     const std::weak_ptr<const void> identity = set.cones.identity();
     if (identity.owner_before(last_set_) || last_set_.owner_before(identity)) {
@@ -93,7 +95,8 @@ void FramePlan::take_apart(const ClusterSet& set, const PlaceTarget& target, con
 }
 
 void FramePlan::order_whole(std::size_t cluster_count) {
-  // Slices divide the bits of the key, which grow with its logarithm, so slices get deeper with distance.
+  // Slices divide the range of the keys' bits evenly. The bits grow with the logarithm of the key, so slices get deeper
+  // with distance.
   std::uint32_t least = 0xFFFFFFFFu, greatest = 0;
   for (std::size_t i = 0; i < cluster_count; ++i) {
     if (culled_.fate_of(i) != ClusterFate::whole) continue;
@@ -133,8 +136,8 @@ struct ZBuffer::State {
   FramePlan plan;
   Pool<TileScratch> scratches;
   Visible visible;
-  /// By tile: true if its planes hold nothing but "nothing is seen". Tiles that stay empty need not be filled again, as
-  /// long as the grid is the same.
+  /// One entry a tile: 1 if nothing is seen in the tile's part of the planes. Such a tile need not be filled again if
+  /// it stays empty and the grid of tiles stays the same.
   std::vector<std::uint8_t> blank;
 
   /// Makes planes for the view, or keeps those of the last frame if they fit. \returns true if their memory was used

@@ -9,12 +9,13 @@
 
 namespace frontmost::shading {
 
-inline constexpr int batch_capacity = 256;  ///< all arrays together fit into a second-level cache
+inline constexpr int batch_capacity = 256;  ///< fragments; all arrays together fit into a second-level cache
 
-inline constexpr int batch_room = batch_capacity + 16;  ///< a vector may begin at the last fragment
+inline constexpr int batch_room = batch_capacity + 16;  ///< length of the arrays; a vector may begin at the last
+                                                        ///< fragment
 
 struct alignas(64) Lane {
-  float values[batch_room];  ///< without the extra room, lanes a power of two apart would share few sets of the cache
+  float values[batch_room];  ///< no power of two, because lanes a power of two apart would share few sets of the cache
   float& operator[](int i) { return values[i]; }
   const float& operator[](int i) const { return values[i]; }
 };
@@ -38,20 +39,21 @@ struct Lane3 {
   }
 };
 
-/// Steps from each fragment's place on the screen to those of the next pixels to the right and below.
+/// For each fragment, the steps on the screen to the next pixel to the right (x) and to the next one below (y).
 struct PixelSteps {
   Lane2 x, y;
 };
 
-/// The places of the fragments. Arrays have room for loops over whole vectors, which read and write behind the last.
+/// Where the fragments of a batch are. The arrays are longer than the batch, because loops over whole vectors read and
+/// write behind the last fragment.
 struct Coverage {
   int count = 0;
-  std::uint32_t pixel[batch_room];          ///< within the tile
+  std::uint32_t pixel[batch_room];          ///< number chosen by the caller, such as the pixel within the tile
   std::uint16_t triangle[batch_room] = {};  ///< number of the set-up triangle
   std::uint64_t samples[batch_room];        ///< one bit for each sample of the pixel that the fragment covers
   Lane weight;                              ///< share of the pixel's samples
   Lane2 screen;                             ///< mean position of those samples
-  const PixelSteps* steps = nullptr;        ///< null: pixels are units of the screen
+  const PixelSteps* steps = nullptr;        ///< null if a pixel is one unit of the screen
 };
 
 /// A set of texture coordinates, and their change per pixel.
@@ -76,24 +78,24 @@ struct Geometry {
 struct Reflectance {
   Lane3 base, emissive;
   Lane alpha, metallic, roughness, occlusion;
-  Lane unlit;  ///< 1 or 0
+  Lane unlit;  ///< 1 for materials that lights do not change, else 0
 };
 
 /// Data of material layers for each fragment. Lanes are defined only if the batch has the layer. A fragment without the
 /// layer then has the value that reflects, scatters or transmits nothing.
 struct LayerLanes {
   bool has_dielectric = false;  ///< some fragment has a reflectance other than 0.04, or transmits light
-  Lane is_dielectric;           ///< 1 for those fragments, else 0
+  Lane is_dielectric;           ///< 1 for a fragment with such a material, else 0
   Lane3 f0;                     ///< reflectance of the non-metallic part at normal incidence
   Lane f90;                     ///< reflectance at grazing incidence
   Lane transmission;            ///< share of the light below the surface that passes through
 
   bool has_transmission = false;
   Lane3 filter;   ///< share of the transmitted light that is left by base colour and volume, by channel
-  Lane is_shown;  ///< 0 where light leaves a volume: the surface itself is then invisible
+  Lane is_shown;  ///< 0 where light leaves a volume, because that surface is invisible; else 1
 
   bool has_sheen = false;
-  Lane3 sheen, sheen_light;  ///< colour; and the light that the fibres scatter back
+  Lane3 sheen, sheen_light;  ///< colour of the fibres, and the light that they scatter back
   Lane sheen_roughness;
 
   bool has_coat = false;
@@ -108,8 +110,8 @@ struct FragmentBatch {
   Reflectance material;
   Lane shadow;  ///< share of the current light that arrives
   Lane3 light;  ///< the result: linear, before alpha
-  /// Opacity by channel, where one alpha is not enough; material.alpha is then the mean of the channels. Defined only
-  /// if layers.has_transmission.
+  /// Opacity of each colour channel, if one alpha is not enough. `material.alpha` is then the mean of the channels.
+  /// Defined only if layers.has_transmission.
   Lane3 alphas;
   LayerLanes layers;
   /// The varnish, if layers.has_coat: the same fragments with the varnish's normal and roughness, and no diffuse part.

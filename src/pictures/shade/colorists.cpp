@@ -35,22 +35,21 @@ float wrapped_texcoord(float value) {
   return value - (whole > value ? whole - 1.0f : whole);
 }
 
-/// Whether light that reaches the shading normal would come from behind the triangle, on a surface that is not lifted
-/// towards the viewer over the triangle's horizon. An example is the inside of a hollow body, whose wall the light
-/// would have to cross. Rays ignore the triangle from which they start, and a shadow map has a bias thicker than the
-/// wall.
+/// Returns true if light that reaches the shading normal comes from behind the triangle, unless the smooth surface is
+/// lifted above the triangle. Inside a hollow body this light would have to cross the wall, but no shadow shows it:
+/// rays ignore the triangle from which they start, and the bias of a shadow map is thicker than the wall.
 bool comes_through(const Geometry& g, int i, const glm::vec3& to_light) {
   return glm::dot(g.plane_normal.at(i), to_light) <= 0 && g.smooth_position.at(i) == g.position.at(i);
 }
 
-/// Bright for the nearest depth, dark for the farthest.
+/// Returns the grey of a depth: bright for the nearest, dark for the farthest.
 glm::vec3 shown_depth(float depth, const DepthRange& range) {
   const float size = range.farthest - range.nearest;
   const float t = size > 0 ? std::clamp((depth - range.nearest) / size, 0.0f, 1.0f) : 0.0f;
   return glm::vec3(linear_of_shown_channel(0.95f - 0.85f * t));
 }
 
-/// A distinctive colour for an object; as displayed, 0 to 1. Hues are a golden angle apart, in three rounds of
+/// Returns a distinctive colour for an object, as displayed, 0 to 1. Hues are a golden angle apart, in three rounds of
 /// brightness, so that consecutive numbers look different.
 glm::vec3 color_of_object(std::uint32_t object) {
   const float hue = float(object * 0x9E3779B9u >> 8) / float(1 << 24) * 6.0f;
@@ -64,7 +63,7 @@ glm::vec3 color_of_object(std::uint32_t object) {
   return {part(5.0f), part(3.0f), part(1.0f)};
 }
 
-/// Shows opaque surfaces: color_at(geometry, i, triangle of fragment i) is a linear colour.
+/// Shows opaque surfaces: the light of fragment i is color_at(geometry, i, triangle of the fragment), a linear colour.
 template <class ColorAt>
 void show_opaque(const std::vector<TriangleSetup>& setups, FragmentBatch& batch, ColorAt color_at) {
   for (int i = 0; i < batch.coverage.count; ++i) {

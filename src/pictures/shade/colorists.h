@@ -21,7 +21,7 @@ struct Lit {
   const PictureLights& lights;
   const LightShadows& shadows;  ///< shadows of these lights
   Isa isa;
-  const DepthOcclusion* occlusion = nullptr;  ///< null: none
+  const DepthOcclusion* occlusion = nullptr;  ///< null if no ambient occlusion is wanted
   void operator()(const std::vector<TriangleSetup>& setups, FragmentBatch& batch) const;
 
  private:
@@ -30,16 +30,17 @@ struct Lit {
 };
 
 struct PreparedScene;
-/// The colorist for the light of a picture and its shadows; borrows the light. Prepared data stays in `scene`.
+/// Returns the colorist for the lights of a picture and their shadows. Borrows `lighting`; the scene keeps what is
+/// prepared.
 [[nodiscard]] Lit lit_by(const Lighting& lighting, const ShadedPicture& picture, PreparedScene& scene,
                          const Execution& execution);
 
-/// The colorist of a picture that is flat, of normals, ids or texture coordinates. Borrows the materials.
+/// Returns the colorist for Shading flat, normals, ids or uv. Borrows the materials.
 [[nodiscard]] FragmentShader::Colorist unlit_colorist(Shading shading, const MaterialTable& materials, Isa isa);
-/// World normals without mapping to colours, for normal_image(). Borrows the materials.
+/// Returns the colorist of normal_image(), whose values are world normals and not colours. Borrows the materials.
 [[nodiscard]] FragmentShader::Colorist normal_colorist(const MaterialTable& materials, Isa isa);
 
-/// The range of depths that a picture of depths maps from bright to dark.
+/// A range of depths. Pictures of depths map it to brightness, the nearest to bright.
 struct DepthRange {
   float nearest = std::numeric_limits<float>::infinity(), farthest = -std::numeric_limits<float>::infinity();
 
@@ -48,13 +49,14 @@ struct DepthRange {
     farthest = std::max(farthest, other.farthest);
   }
 };
-/// The range of all visible depths; both 0 where nothing is visible. O(samples), in parallel.
+/// Returns the range of all visible depths, or 0 and 0 if nothing is visible. O(samples), in parallel.
 [[nodiscard]] DepthRange depth_range(const Visible& visible, const Execution& execution);
-/// The colorists of pictures of depths, and of distances from the eye.
+/// Returns the colorist of pictures of planar depths. The next function returns that of distances from the eye.
 [[nodiscard]] FragmentShader::Colorist depth_colorist(const DepthRange& range, const glm::vec3& forward);
 [[nodiscard]] FragmentShader::Colorist distance_colorist(const DepthRange& range);
 
-/// The linear value that is displayed as `value`, 0 to 1 in sRGB. The error is well below 1/1000 of a step of 8 bits.
+/// Returns the linear value that is displayed as `value`, which is sRGB, 0 to 1. The error is well below 1/1000 of an
+/// 8-bit step.
 [[nodiscard]] glm::vec3 linear_of_shown(const glm::vec3& value);
 
 }  // namespace frontmost::shading

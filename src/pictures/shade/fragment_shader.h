@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Collects fragments into batches, sets up triangles that are new to them, and returns colours in the order of arrival.
+// Collects fragments into batches, sets up the triangles that a batch is the first to need, and returns the colours in
+// the order in which the fragments were added.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 
 namespace frontmost::shading {
 
-/// The triangles that were set up for one tile, by id: an open-addressing table.
+/// The triangles that were set up for one tile. An open-addressing table finds them by id.
 class TriangleCache {
  public:
   TriangleCache() : slots_(slot_count), setups_(capacity) {}
@@ -28,9 +29,9 @@ class TriangleCache {
 
   struct Found {
     std::uint16_t number;
-    bool is_new;  ///< the caller has to set it up
+    bool is_new;  ///< the caller has to set up this triangle
   };
-  /// Precondition: not full.
+  /// Returns the number of a triangle, which is added if it is absent. Precondition: the cache is not full.
   Found find_or_add(PrimitiveId id) {
     std::uint32_t slot = id * 0x9E3779B1u >> 21;  // 11 bits: slot_count
     while (slots_[slot].generation == generation_) {
@@ -55,14 +56,14 @@ class TriangleCache {
   int count_ = 0;
 };
 
-/// Used by one thread, again for every picture. About half a megabyte.
+/// Shades fragments in one thread. The object, of about half a megabyte, is used again for every picture.
 class FragmentShader {
  public:
-  /// Colours a batch: reads coverage and geometry, fills batch.light and batch.material.alpha.
+  /// Colours a batch: reads coverage and geometry, and fills batch.light and batch.material.alpha.
   using Colorist = std::function<void(const std::vector<TriangleSetup>&, FragmentBatch&)>;
 
-  /// Starts a picture; borrows its arguments. Precondition of all other functions. `steps` may be null; else it holds
-  /// the steps of the fragments that are added before the next hand_out(), in their order.
+  /// Starts a picture, and borrows its arguments. Must come before all other functions. If `steps` is not null, it must
+  /// hold the steps of all fragments added before the next hand_out(), in the order of these fragments.
   void begin(const TriangleSource& source, const Colorist& colorist, Isa isa, const PixelSteps* steps = nullptr) {
     isa_ = isa;
     source_ = &source;
@@ -71,30 +72,30 @@ class FragmentShader {
     batch_.coverage.steps = steps;
     clear();
   }
-  /// How many more fragments can be added before hand_out().
+  /// Returns how many more fragments can be added before hand_out().
   [[nodiscard]] int room() const { return cache_.is_full() ? 0 : batch_capacity - batch_.coverage.count; }
   [[nodiscard]] bool is_full() const { return room() == 0; }
-  /// How many fragments were added since the last hand_out().
+  /// Returns how many fragments were added since the last hand_out().
   [[nodiscard]] int count() const { return batch_.coverage.count; }
-  /// Adds a fragment. `number` belongs to the caller; `screen` is the shaded position, within the pixel of the
-  /// `samples` (one bit each). Precondition: not full.
+  /// Adds a fragment, shaded at the position `screen`. The caller chooses `number`; `samples` has one bit for each
+  /// covered sample of the pixel. Precondition: not full.
   void add(PrimitiveId id, std::uint32_t number, const glm::vec2& screen, std::uint64_t samples, float weight) {
     add_row(id, 1, {number, screen, samples, weight});
   }
-  /// The common data of pixels of a row, with number and position of the first.
+  /// The values that the pixels of a row share, with the number and position of the first pixel.
   struct RowStart {
     std::uint32_t number;
     glm::vec2 screen;
     std::uint64_t samples;
     float weight;
-    int step = 1;  ///< distance between pixels
+    int step = 1;  ///< distance from one pixel to the next
   };
-  /// Adds `count` pixels of a row; their numbers are as far apart as the pixels. Precondition: room() >= count.
+  /// Adds `count` pixels of a row. Their numbers are `step` apart, like the pixels. Precondition: room() >= count.
   void add_row(PrimitiveId id, int count, const RowStart& start) {
     const TriangleCache::Found found = cache_.find_or_add(id);
     if (found.is_new) new_triangles_.push_back({id, found.number, start.screen});
     Coverage& out = batch_.coverage;
-    // Writes four at a time: most rows are that short, and the next row overwrites any excess.
+    // Four pixels are written at a time, because most rows are that short. The next row overwrites any excess.
     constexpr int at_once = 4;
     for (int k = 0; k < count; k += at_once)
       for (int lane = 0; lane < at_once; ++lane) {
@@ -114,9 +115,9 @@ class FragmentShader {
     float weight;
     glm::vec3 light;   ///< not premultiplied
     float alpha;       ///< mean over the channels
-    glm::vec3 alphas;  ///< by channel
+    glm::vec3 alphas;  ///< of each colour channel
   };
-  /// Shades the added fragments and calls receive(shaded) for each, in the order of arrival.
+  /// Shades the added fragments and calls receive(shaded) for each, in the order in which they were added.
   template <class Receive>
   void hand_out(const Receive& receive) {
     Coverage& coverage = batch_.coverage;
@@ -149,7 +150,7 @@ class FragmentShader {
   Isa isa_ = Isa::best;
   TriangleCache cache_;
   std::vector<NewTriangle> new_triangles_;  ///< triangles of the batch that are still to be set up
-  FragmentBatch batch_;                     ///< in the order of arrival; `pixel` is the caller's number
+  FragmentBatch batch_;                     ///< in the order of add(); coverage.pixel is the caller's number
 };
 
 }  // namespace frontmost::shading

@@ -11,7 +11,7 @@
 
 namespace frontmost::shading {
 
-/// 2^x, clamped to the range of normal floats.
+/// Returns 2^x, clamped to the range of normal floats.
 [[nodiscard]] inline float exp2_of(float x) {
   x = x > -126.0f ? x : -126.0f;  // for NaN, too
   x = x < 126.0f ? x : 126.0f;
@@ -31,7 +31,7 @@ namespace frontmost::shading {
   return series * power;
 }
 
-/// The binary logarithm. Precondition: x is a normal positive number.
+/// Returns the binary logarithm. Precondition: x is a normal positive number.
 [[nodiscard]] inline float log2_of(float x) {
   std::int32_t bits;
   std::memcpy(&bits, &x, sizeof bits);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Data that all pictures of the same surfaces share; it is computed when first needed.
+// Data that all pictures of the same surfaces share. It is computed when it is first needed.
 #pragma once
 
 #include <algorithm>
@@ -17,22 +17,22 @@ namespace frontmost::shading {
 [[nodiscard]] inline bool lacks_normals(const Scene& scene) {
   return std::any_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh& m) { return m.normals.empty(); });
 }
-/// Whether colours come from materials.
+/// Whether this kind of shading takes colours or normals from materials.
 [[nodiscard]] inline bool shows_materials(Shading shading) {
   return shading == Shading::lit || shading == Shading::flat || shading == Shading::normals;
 }
-/// \throws Error bad_argument unless exactly one of both inputs is given and it is valid.
+/// Checks the input of a picture. \throws Error bad_argument unless exactly one of the two inputs is given.
 inline void check_given(const ShadeInput& input, const char* who) {
   if (!input.visible == !input.pixels)
     throw Error(ErrorCode::bad_argument, who, "give either a Visible or VisiblePixels");
 }
-/// \throws Error bad_argument.
+/// Checks the opacity. \throws Error bad_argument if it is not from 0 to 1.
 inline void check_opacity(const ShadeOptions& options) {
   if (!(options.opacity >= 0.0f && options.opacity <= 1.0f))
     throw Error(ErrorCode::bad_argument, "shade: opacity", "must be 0 to 1");
 }
 
-/// The set of primitives that hold a sample.
+/// Returns the set of primitives that are seen in at least one sample.
 [[nodiscard]] inline BitSet seen_primitives(const Surfaces& surfaces, const ShadeInput& input,
                                             const Execution& execution, BitSet memory) {
   BitSet seen = seen_primitives(surfaces.primitive_count(), input.first().primitives, execution, std::move(memory));
@@ -64,20 +64,20 @@ struct PreparedScene {
     occlusion_radius.reset();
   }
 
-  /// Prepares the textures that are visible on these primitives.
+  /// Prepares the textures of the materials that these primitives have.
   void make_materials_ready(const BitSet& primitives, const Execution& execution) {
     if (materials.is_ready() || looked_at.holds(primitives)) return;
     materials.make_ready(seen_materials(surfaces, primitives, looked_at), execution);
-    looked_at.add_all(primitives);  // not reached if preparing failed
+    looked_at.add_all(primitives);  // not reached if preparing has thrown
   }
-  /// Prepares the textures of all visible primitives. Does not search for these if all textures are ready.
+  /// Prepares the textures of all visible primitives. If all textures are ready, nothing is searched.
   void make_materials_ready(const ShadeInput& input, const Execution& execution) {
     if (materials.is_ready()) return;
     seen = seen_primitives(surfaces, input, execution, std::move(seen));
     make_materials_ready(seen, execution);
   }
 
-  /// The occlusion of a picture; null if the options ask for none. Borrows the picture.
+  /// Returns the ambient occlusion of a picture, or null if the options ask for none. Borrows the picture.
   const DepthOcclusion* find_occlusion(const ShadeInput& input, const ShadeOptions& options,
                                        const Execution& execution) {
     if (!options.light.ambient_occlusion) return nullptr;
@@ -95,7 +95,7 @@ struct PreparedScene {
     return &occlusion;
   }
 
-  /// The environment in the options; by default the studio, which the first call makes.
+  /// Returns the environment in the options. If they have none, it is the studio, which the first call makes.
   [[nodiscard]] const Environment& environment(const LightOptions& options, const Execution& execution) {
     if (options.environment) return *options.environment;
     if (!studio) studio = Environment::studio(execution);
@@ -103,7 +103,7 @@ struct PreparedScene {
   }
 
   const Surfaces& surfaces;
-  std::uint64_t moves;  ///< number of moves of the surfaces that were applied
+  std::uint64_t moves;  ///< number of moves of the surfaces that were applied here
   TriangleStore triangles;
   MaterialTable materials;
   LightShadows shadows;
@@ -112,11 +112,11 @@ struct PreparedScene {
   BitSet looked_at;                        ///< primitives whose materials are ready
   std::optional<Environment> studio;
 
-  // Memory that each picture leaves to the next.
+  // Memory that is reused from picture to picture.
   PictureLights lights;
   Pool<TileWork> works;
   Pool<ScanTileWork> scan_works;
-  std::optional<RayIndex> index;  ///< index of the surfaces, for scans that see through them and bring no index
+  std::optional<RayIndex> index;  ///< index for scans that see through surfaces and bring no index of their own
   BitSet seen, large;
 };
 

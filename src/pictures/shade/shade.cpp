@@ -27,7 +27,7 @@ bool wants_layers(const PictureRequest& request) {
   return has_see_through(request.scene.surfaces.scene()) || request.options.opacity < 1.0f;
 }
 
-/// Whether `is_so` holds for the primitives of samples 1 and up in a row of a tile, for pixels whose samples differ.
+/// Whether `is_so` holds for the primitives of samples 1 and up of all mixed pixels in row `y` of a tile.
 template <class IsSo>
 bool all_of_mixed(const VisiblePixels& pixels, const Rectangle& tile, int y, const IsSo& is_so) {
   constexpr int run = VisiblePixels::run;
@@ -59,7 +59,7 @@ bool all_of_tile(const ShadeInput& input, const Rectangle& tile, const IsSo& is_
 /// The input of a picture of materials: a Visible and, if materials are see-through, all layers.
 class ShownMaterials {
  public:
-  /// Prepares whatever the scene lacks. Borrows the request.
+  /// Prepares materials, normals and layers, if the picture needs them. Borrows the request.
   explicit ShownMaterials(const PictureRequest& request)
       : request_(request), input_(request.input), scene_(request.scene) {
     const bool wants_normals = request.options.shading != Shading::flat && lacks_normals(scene_.surfaces.scene());
@@ -69,12 +69,12 @@ class ShownMaterials {
                     scene_.materials.has_textures());
   }
 
-  /// The positions of samples within a pixel, in 1/256.
+  /// Returns the positions of samples within a pixel, in 1/256.
   [[nodiscard]] std::span<const glm::ivec2> samples() const {
     return layers_ ? std::span(layer_samples_) : sample_offsets(input_.view().samples);
   }
 
-  /// Precondition: the layers were found.
+  /// Returns every fragment with its colour. Precondition: the layers were found.
   [[nodiscard]] DeepImage deep(const FragmentShader::Colorist& colorist) const {
     return deep_layers(scene_.surfaces, input_.view(), *source_, *layers_, colorist, request_.execution);
   }
@@ -118,7 +118,7 @@ class ShownMaterials {
     scene_.make_materials_ready(scene_.large, request_.execution);
   }
 
-  /// Whether all that is seen in a tile is opaque, so that the front alone gives its picture.
+  /// Whether every visible surface in a tile is opaque, so that nothing behind the front counts.
   [[nodiscard]] bool shows_front_alone(const Rectangle& tile) const {
     if (!takes_front_) return false;
     PrimitiveId last = no_primitive;
@@ -134,8 +134,8 @@ class ShownMaterials {
   PreparedScene& scene_;
   std::optional<abuffer_detail::FragmentPass> layers_;
   std::vector<glm::ivec2> layer_samples_;
-  bool takes_front_ = false;  ///< tiles without see-through parts are painted from the front, which has the same
-                              ///< samples
+  bool takes_front_ = false;  ///< whether tiles without see-through parts are painted from the Visible, whose samples
+                              ///< are those of the layers
   std::optional<TriangleSource> source_;
 };
 
@@ -203,7 +203,7 @@ void paint_map(const PictureRequest& request, TileCanvas& canvas) {
   paint(depth_colorist(depth_range(visible, request.execution), glm::vec3(visible.view.forward())));
 }
 
-/// Precondition: check().
+/// Paints a picture. Precondition: check() has accepted the request.
 void paint(const PictureRequest& request, TileCanvas& canvas) {
   const auto paint_surfaces = shows_materials(request.options.shading) ? paint_materials : paint_map;
   if (!request.options.light.shows_environment) return paint_surfaces(request, canvas);

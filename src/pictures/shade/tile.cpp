@@ -10,8 +10,8 @@
 namespace frontmost::shading {
 namespace {
 
-/// A fragment's number is the number of its pixel, in the low kPixelBits. A fragment shared by a block of 2 x 2 pixels
-/// has the number of the block's first pixel; the next four bits say which pixels share it.
+/// A fragment's number is the number of its pixel, in the low kPixelBits. If a block of 2 x 2 pixels shares a fragment,
+/// the number is that of the block's first pixel, and the next four bits say which pixels share the fragment.
 constexpr std::uint32_t kPixelBits = 16;
 constexpr std::uint32_t kWholeBlock = 15u << kPixelBits;
 static_assert(tile_pixels <= 1 << kPixelBits);
@@ -44,7 +44,8 @@ bool TileWork::shade(const TileRectangle& tile) {
   if (!anything) return false;
   // Most of a picture is background, so nothing is cleared before a fragment is found.
   std::fill(pixels_.begin(), pixels_.end(), glm::vec4(0));
-  // In strips: fragments of a batch then lie close together on the surface, which helps rays that are cast together.
+  // Fragments are added strip by strip, so that a batch lies close together on the surface. This helps rays that are
+  // cast together.
   constexpr int strip = 16;
   const bool is_coarse = rate_ == ShadingRate::each_2x2;
   for (int left = 0; left < tile.width; left += strip) {
@@ -221,7 +222,7 @@ void TileWork::add_shared(PrimitiveId (&ids)[4], glm::vec2 corner, std::uint32_t
 }
 
 void TileWork::flush() {
-  // The order of arrival is that of samples, so the sum of a pixel does not depend on its neighbours.
+  // A pixel's fragments arrive in the order of its samples, so its sum does not depend on the neighbours.
   fragments_.hand_out([this](const FragmentShader::Shaded& s) {
     const glm::vec4 color(s.light * (s.weight * s.alpha), s.weight * s.alpha);
     const std::uint32_t pixel = s.number & ((1u << kPixelBits) - 1), sharing = s.number >> kPixelBits;

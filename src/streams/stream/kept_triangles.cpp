@@ -32,7 +32,8 @@ void move_to(std::vector<T>& from, std::vector<T>& to) {
   std::vector<T>().swap(from);
 }
 
-/// Frees the memory of `part` list by list: keeping both would take twice the memory.
+/// Appends `part` to `whole`. Frees the memory of `part` list by list, because keeping both would take twice the
+/// memory.
 void move_mesh(Mesh& part, Mesh& whole) {
   const auto first = std::uint32_t(whole.positions.size());
   for (const glm::uvec3& t : part.triangles) whole.triangles.push_back(t + first);

@@ -64,7 +64,7 @@ void thin_out(Kept& kept, const IsWanted& is_wanted) {
 ///   buckets      by upper bits: the first index of each, so that a look-up is one step and a short search
 class IdMap {
  public:
-  /// `ids` ascending; borrowed.
+  /// `ids` ascend, and are borrowed.
   explicit IdMap(const std::vector<PrimitiveId>& ids) : ids_(ids) {
     if (ids.empty()) return;
     while ((std::size_t(ids.back()) >> shift_) > ids.size()) ++shift_;
@@ -98,7 +98,7 @@ class IdMap {
  private:
   const std::vector<PrimitiveId>& ids_;
   int shift_ = 0;
-  std::vector<std::uint32_t> begin_;  ///< first index of each bucket, and the end of the last
+  std::vector<std::uint32_t> begin_;  ///< first index of each bucket; then the number of ids
 };
 
 }  // namespace streaming

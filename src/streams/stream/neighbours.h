@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the triangles of a stream that touch visible ones. Smooth normals are computed from them.
+// Finds the triangles of a stream that touch visible triangles, because smooth normals are computed from them.
 //
 // The normal at a vertex is a mean over all triangles that have a vertex at the same position. Triangles that are not
 // seen are gone after the first pass. So a second pass asks of every triangle whether it touches a visible one:
@@ -35,7 +35,7 @@ class TouchedPositions {
     filter_[bit / 64] |= std::uint64_t(1) << (bit % 64);
   }
 
-  /// True if a vertex of the triangle is in the set. Several threads may ask at once, when all positions were added.
+  /// True if a vertex of the triangle is in the set. Several threads may ask at once, after all positions were added.
   [[nodiscard]] bool touches(const Mesh& mesh, std::uint32_t triangle) {
     bool touches = false;
     for (int k = 0; k < 3; ++k) {
@@ -50,8 +50,8 @@ class TouchedPositions {
   }
 
  private:
-  /// More vertices than smooth normals examine at one position (shade/geometry/smooth_normals.cpp: 256), so that such a
-  /// position is recognised there as having too many.
+  /// More than the number of vertices that smooth normals examine at one position (shade/geometry/smooth_normals.cpp:
+  /// 256), so that smooth normals, too, recognise such a position as having too many.
   static constexpr std::uint32_t most_at_one_place = 1000;
 
   using Bits = std::array<std::uint32_t, 3>;
@@ -86,7 +86,7 @@ class TouchedPositions {
   std::vector<Slot> slots_;
 };
 
-/// Finds the triangles that touch large ones, in addition to the visible ones.
+/// Finds the visible triangles, and those that touch large visible triangles.
 class NeighbourFinder {
  public:
   /// Triangles of `seen` are copied anew, so that they and their neighbours are in the order of the stream.

@@ -41,9 +41,10 @@ class OutlineFinder {
   OutlineFinder(const View& direction, double margin)
       : extremes_(FilledFrustum(direction.world_from_eye, direction.projection, margin)) {}
 
-  /// Does not look at every vertex: a run of neighbouring triangles whose box adds nothing has no point of the outline.
+  /// Includes the points of a mesh, but does not look at every vertex: a run of neighbouring triangles whose box would
+  /// change nothing has no point of the outline.
   void include(const Mesh& mesh) {
-    constexpr std::size_t run = 64;  // neighbours mostly, so few runs reach out and have their vertices examined
+    constexpr std::size_t run = 64;  // mostly neighbours in space, so few runs extend the outline
     const std::size_t count = mesh.triangles.size();
     // A few triangles from all over the piece go first. Otherwise, where a model grows from one end to the other, every
     // run would reach farther than the last, and all vertices would be examined.
@@ -63,8 +64,8 @@ class OutlineFinder {
     points.insert(points.end(), std::begin(ends_), std::end(ends_));
     return points;
   }
-  /// The points as triangles without area. Surfaces of this scene have the model's bounds, and frame() frames them
-  /// alike.
+  /// The kept points as triangles without area. Surfaces of this scene have the model's bounds, and frame() returns the
+  /// same view for them.
   [[nodiscard]] Scene scene() const {
     Scene scene;
     if (bounds_.is_empty()) return scene;
@@ -76,7 +77,7 @@ class OutlineFinder {
   }
 
  private:
-  /// Examines a run in quarters, because mostly a small part of it reaches out.
+  /// Examines a run in quarters, because mostly only a small part of the run extends the outline.
   void include_run(const Mesh& mesh, std::size_t begin, std::size_t end) {
     if (!may_change_by(finite_bounds(mesh, begin, end))) return;
     const std::size_t part = (end - begin + 3) / 4;

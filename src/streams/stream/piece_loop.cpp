@@ -43,7 +43,8 @@ Models::Models(const std::vector<std::string>& paths, const LoadOptions& options
     Model model;
     model.stream = open_model_stream(path, options, execution);
     add(std::move(model));
-    // Counts in headers are enough to refuse; other files are caught while they are read.
+    // Counts in headers suffice to refuse files before they are read; files without counts are refused while they are
+    // read.
     known += models_.back().stream->known_count().value_or(0);
     if (known > most_triangles) fail_too_many();
   }
@@ -72,7 +73,8 @@ void Models::add(Model model) {
   take_warnings(models_.back());
 }
 
-/// All ranks know the warnings of opening. Warnings of a pass are reported by one of the ranks that read the file.
+/// Adds a warning. All ranks know the warnings of opening. Warnings of a pass are reported by one of the ranks that
+/// read the file.
 void Models::warn(const Model& model, const std::string& text) {
   const std::string words = model.stream->source().with_name(text);
   if (turns_.count == 1 || !has_opened_) return scene_.warnings.push_back(words);
@@ -200,7 +202,7 @@ class Queue {
   }
   void fail(std::size_t number) {
     const std::lock_guard lock(mutex_);
-    // The earliest piece counts, as for a single thread: messages do not depend on threads.
+    // The error of the earliest piece is kept, as with a single thread, so messages do not depend on threads.
     if (error_ && number_ <= number) return;
     error_ = std::current_exception();
     number_ = number;

@@ -21,7 +21,7 @@ namespace frontmost::streaming {
 struct PiecePlace {
   std::size_t number = 0;    ///< number of the piece
   PrimitiveId first = 0;     ///< number of its first triangle in the stream
-  std::uint32_t object = 0;  ///< object of its file
+  std::uint32_t object = 0;  ///< number of the object that its file became
 };
 
 /// Decides which pieces this rank reads.
@@ -54,9 +54,9 @@ class Models {
   /// Number of triangles of the files that were read in the last pass.
   [[nodiscard]] std::uint64_t triangle_count() const;
 
-  // Facts that ranks which read parts of the models exchange after their first pass.
+  // Facts that ranks exchange after their first pass if each rank reads a part of the models.
 
-  /// First id and number of triangles of each file in the last pass; none for files that other ranks read.
+  /// First id and number of triangles of each file in the last pass; the number is 0 for files that other ranks read.
   [[nodiscard]] std::vector<PrimitiveId> first_ids() const;
   [[nodiscard]] std::vector<std::uint64_t> triangle_counts() const;
   /// Sets the numbers of triangles of all files, read here or not. Ids are those of the whole model from now on.
@@ -71,10 +71,10 @@ class Models {
     std::unique_ptr<ModelStream> stream;
     std::uint32_t object = 0, first_material = 0;
     glm::dvec3 moved{0};               ///< position of its mesh in world space
-    std::size_t warnings = 0;          ///< number taken over so far
+    std::size_t warnings = 0;          ///< number of warnings taken over so far
     PrimitiveId first = 0;             ///< id of its first triangle
-    std::uint64_t triangle_count = 0;  ///< number fetched in this pass
-    bool has_ended = false;            ///< in this pass or an earlier one
+    std::uint64_t triangle_count = 0;  ///< number of triangles fetched in this pass
+    bool has_ended = false;            ///< whether the file was read to its end, in this pass or an earlier one
   };
   void add(Model model);
   void warn(const Model& model, const std::string& text);
@@ -88,7 +88,7 @@ class Models {
   std::vector<Model> models_;
   Turns turns_;
   Scene scene_;
-  std::vector<FileWarning> warnings_;  ///< from passes, for other ranks
+  std::vector<FileWarning> warnings_;  ///< warnings of passes, to be shared with other ranks
   bool has_opened_ = false, knows_firsts_ = false;
   std::size_t current_ = 0, begun_ = 0, next_number_ = 0;
   std::uint64_t next_ = 0, shared_pieces_ = 0;

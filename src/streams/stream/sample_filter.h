@@ -57,7 +57,7 @@ class SampleFilter {
       if ((a.beyond | b.beyond | c.beyond) != 0) {
         if ((a.beyond & b.beyond & c.beyond & ~std::uint32_t(unknown)) != 0) continue;
         marks[t] = 1;
-        // The clipper finds out where the triangle meets the screen.
+        // Only clipping would tell where the triangle meets the screen.
         pixels = {0, 0, width_, height_};
         continue;
       }

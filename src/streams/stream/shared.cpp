@@ -34,7 +34,8 @@ PassFacts facts_of(const Ranks::Message& message) {
   return facts;
 }
 
-/// Calls visit(list) for each list that a message holds about kept triangles, except the list of their positions.
+/// Calls visit(list) for each list of kept triangles that a message holds. Vertex numbers are left out, because they
+/// follow from the order of the triangles.
 template <class AnyKept, class Visit>
 void for_each_list(AnyKept& kept, const Visit& visit) {
   visit(kept.triangles);
@@ -99,7 +100,7 @@ std::vector<glm::vec3> share(Ranks& ranks, const std::vector<glm::vec3>& mine) {
 }
 
 void share(Ranks& ranks, Visible& visible, const Execution& execution) {
-  // Merging in runs: the whole plane at once would take as much memory again, and would not be faster.
+  // Planes are merged in runs, because a whole plane at once would take as much memory again, and would not be faster.
   constexpr std::size_t run = 1u << 20, samples_at_once = 1u << 16;
   PrimitiveId* const ids = visible.primitives.data();
   float* const keys = visible.keys.data();

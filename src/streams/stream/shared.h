@@ -19,8 +19,8 @@
 
 namespace frontmost::streaming {
 
-/// Messages are values and lists of values in sequence, as they lie in memory. All ranks run the same program on
-/// machines of one kind; the caller sees to that.
+/// Messages are values and lists of values in sequence, as they lie in memory. All ranks must run the same program on
+/// machines of one kind.
 class MessageWriter {
  public:
   /// Reserves about this many bytes, so that a growing message is not moved.
@@ -51,7 +51,7 @@ class MessageWriter {
   Ranks::Message bytes_;
 };
 
-/// Messages do not fit if ranks read different files, which is an error.
+/// Reads a message. Throws an Error if the message does not fit, which happens if ranks read different files.
 class MessageReader {
  public:
   explicit MessageReader(const Ranks::Message& bytes) : bytes_(bytes) {}
@@ -108,10 +108,10 @@ struct PassFacts {
 /// \returns on all ranks the lists of all ranks, joined.
 [[nodiscard]] std::vector<glm::vec3> share(Ranks& ranks, const std::vector<glm::vec3>& mine);
 
-/// Merges the planes of all ranks into the same planes on each. Ids are those of the whole model.
+/// Merges the planes of all ranks, so that every rank gets the merged planes. Ids are those of the whole model.
 void share(Ranks& ranks, Visible& visible, const Execution& execution);
 
-/// \returns on rank 0 the kept triangles of all ranks, and nothing on other ranks. Places are in the whole model.
+/// \returns on rank 0 the kept triangles of all ranks, and nothing on other ranks. Ids are those of the whole model.
 [[nodiscard]] KeptPieces gather(Ranks& ranks, KeptPieces mine);
 
 /// Maps ids of a pass, in which only this rank's files were counted, to ids of the whole model.
@@ -130,7 +130,7 @@ class IdShift {
   struct File {
     PrimitiveId from, shift;
   };
-  std::vector<File> files_;  ///< ascending
+  std::vector<File> files_;  ///< ascending by `from`
 };
 
 }  // namespace frontmost::streaming

@@ -127,7 +127,8 @@ Selection Drawer::select(const Mesh& mesh, const SightGatherer& sight) {
 
 namespace {
 
-/// Passes on a few triangles at a time, because the mesh's own arrays do not have this layout.
+/// Calls tell() for all triangles of a mesh. Corners are copied, a few triangles at a time, because the mesh's own
+/// arrays do not have this layout.
 void tell_corners(const Mesh& mesh, const std::function<void(CornerSpan)>& tell) {
   std::vector<std::array<glm::vec3, 3>> corners;
   constexpr std::size_t at_once = 1024;

@@ -24,7 +24,7 @@ namespace frontmost::streaming {
 
 /// The part of a piece that is drawn: triangles that may cover a sample, renumbered.
 struct Selection {
-  std::vector<std::uint32_t> numbers;  ///< within the piece, ascending
+  std::vector<std::uint32_t> numbers;  ///< numbers of the triangles within the piece, ascending
   std::vector<PixelBounds> pixels;     ///< pixels that the triangles may cover, by view
 };
 
@@ -53,9 +53,9 @@ class SightGatherer {
   std::vector<bool> merge(const std::vector<const Visible*>& piece, const PiecePlace& place,
                           const Selection& selection);
   void keep(Kept kept);
-  /// After the last piece: merges the planes of all ranks. `shift` maps ids to those of the whole model.
+  /// Merges the planes of all ranks after the last piece. `shift` maps ids to those of the whole model.
   void share(Ranks& ranks, const IdShift& shift, const Execution& execution);
-  /// After share(), if there are ranks: removes kept triangles that later pieces or other ranks hide.
+  /// Removes kept triangles that later pieces or other ranks hide. If there are ranks, share() must come first.
   void forget_hidden();
 
   [[nodiscard]] KeptPieces take_kept() { return std::move(kept_); }

@@ -72,8 +72,8 @@ struct Stream::State {
     options.triangles_at_once = shared_piece_size(paths, given);
   }
 
-  /// Exchanges facts with the other ranks after the first pass, which has found bounds. \returns the map from this
-  /// pass's ids to ids of the whole model.
+  /// Exchanges facts with the other ranks after the first pass. `found` holds the bounds that this rank has found, and
+  /// gets those of all ranks. \returns the map from this pass's ids to ids of the whole model.
   IdShift share_facts(Box& found) {
     const std::vector<PrimitiveId> from = models.first_ids();
     const std::vector<std::uint64_t> counts = models.triangle_counts();
@@ -86,7 +86,8 @@ struct Stream::State {
     return {from, counts, models.first_ids()};
   }
 
-  /// Calls work(worker, piece, place, execution of the worker) for every piece; a piece is drawn into `samples` in all.
+  /// Calls work(worker, piece, place, execution of the worker) for every piece. `samples` is the number of samples that
+  /// a worker draws a piece into, over all views.
   template <class Work>
   void pass(std::size_t samples, const Execution& execution, const Work& work) {
     if (passes++ > 0) {

@@ -52,7 +52,7 @@ TEST(PageChecks, PensAndLists) {
   expect_refused(changed([](PageGroup& g) { g.pen.dashes = {1}; }), "pairs");
   expect_refused(changed([](PageGroup& g) { g.pen.dashes = {1, 0}; }), "dashes and gaps");
   expect_refused(changed([](PageGroup& g) { g.fills = {{}, {}}; }), "fills and paths");
-  expect_refused(changed([](PageGroup& g) { g.paths[0].is_part = true; }), "part of none");
+  expect_refused(changed([](PageGroup& g) { g.paths[0].is_part = true; }), "there is none before it");
   expect_refused(changed([](PageGroup& g) { g.bulges = {0}; }), "bulges and points");
   expect_refused(changed([](PageGroup& g) { g.paths[0].count = 4; }), "beyond the last one of the page");
   expect_refused(changed([](PageGroup& g) { g.paths[0].count = 0; }), "no points");

@@ -223,7 +223,7 @@ TEST(Ply, ErrorsNameHeaderLineOrRow) {
   EXPECT_EQ(error(square_with("3 0 1 -1\n", 1)), "model: line 14: face 0: vertex -1 is out of range, there are 4");
   EXPECT_EQ(error(square_with("3 0 1\n3 0 1 2\n", 2)), "model: line 14: face 0: the row has too few values");
   EXPECT_EQ(error(square_with("-3 0 1 2\n", 1)), "model: line 14: face 0: the length of a list is negative");
-  EXPECT_THAT(error(square_with("3 0 1 2\n", 2)), HasSubstr("face 1: the file ends before the row"));
+  EXPECT_THAT(error(square_with("3 0 1 2\n", 2)), HasSubstr("face 1: the file ends before this row"));
   EXPECT_EQ(error(header("element face 1\n" + corner_list + "element vertex 1\n" + xyz) + "3 0 1 2\n0 0 0\n"),
             "model: line 10: face 0: vertex 0 is out of range, there are 0 before the faces");
   EXPECT_EQ(error(header("element vertex 1\nproperty float x\n") + "1\n"),

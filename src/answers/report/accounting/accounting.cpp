@@ -5,8 +5,9 @@
 //    picture --read--> runs of objects that are seen --+
 //    object  --draw--> mask on the canvas -------------+--> counts by object that is seen: itself, or what hides it
 //
-// Threads read the picture band by band of rows. A band has tallies only of objects that it shows, so a million objects
-// of which few are seen cost nothing. Sums are of integers, so the order in which bands are added does not matter.
+// Threads read the picture band by band of rows. A band holds tallies only for the objects that it shows, so a million
+// objects of which few are seen cost nothing. Sums are of integers, so the order in which bands are added does not
+// matter.
 //
 // A sample that shows nothing in the picture is in no mask, so the counts of an object add up to its samples in frame.
 // Slower alternatives: drawing each object alone by zbuffer() (13 s for a city of 10,000 objects at 1080p); lists of
@@ -33,8 +34,8 @@ constexpr double kLargestScale = 16;
 struct SeenTally {
   std::uint32_t object;
   std::uint64_t count = 0;
-  PixelRect rect;                      ///< in pixels of the picture
-  float nearest = 0;                   ///< the greatest key
+  PixelRect rect;                      ///< around the samples, in pixels of the picture
+  float nearest = 0;                   ///< greatest key of the samples
   std::uint64_t sum_x = 0, sum_y = 0;  ///< sums of the samples' positions, in 1/256 pixel
 
   /// Adds another tally of the same object.
@@ -67,11 +68,11 @@ class TallyList {
   }
 
  private:
-  std::vector<std::uint32_t> places_;  // by object: index into `tallies_` plus 1; 0 if it has none
+  std::vector<std::uint32_t> places_;  // by object: index into `tallies_` plus 1; 0 if the object has no tally
   std::vector<SeenTally> tallies_;
 };
 
-/// The ids of one object, or no_primitive.
+/// A range of ids: those of one object, or no_primitive alone.
 struct ObjectIds {
   std::uint32_t object = no_index;
   PrimitiveId first = no_primitive;
@@ -121,7 +122,7 @@ class BandReader {
   [[nodiscard]] SeenTally tally_of(const PixelRect& run, std::uint32_t object, float nearest, int sample) const {
     const glm::ivec2 offset = sample_offsets(visible_.view.samples)[std::size_t(sample)];
     const auto count = std::uint64_t(run.x1 - run.x0 + 1);
-    // The sum of both ends is twice the middle, in half pixels.
+    // The sum of the run's two ends is twice its middle, so the product is in half pixels.
     const std::uint64_t sum_x =
         count * std::uint64_t(run.x0 + run.x1) * (kSubPixels / 2) + count * std::uint64_t(offset.x);
     const std::uint64_t sum_y = count * std::uint64_t(run.y0 * kSubPixels + offset.y);
@@ -134,7 +135,7 @@ class BandReader {
   Isa isa_;
 };
 
-/// A picture that was read.
+/// What read_picture() finds in a picture.
 struct ReadPicture {
   SeenObjects objects;
   std::vector<SeenTally> tallies;  ///< tallies of the visible objects, in no order
@@ -175,7 +176,7 @@ ReadPicture read_picture(const Surfaces& surfaces, const Visible& visible, const
   return picture;
 }
 
-/// A rectangle of the canvas as pixels of the picture.
+/// Converts a rectangle of the canvas to pixels of the picture.
 PixelBox box_of(const PixelRect& rect, const glm::ivec2& margin) {
   if (rect.is_empty()) return {};
   return {rect.x0 - margin.x, rect.y0 - margin.y, rect.x1 - rect.x0 + 1, rect.y1 - rect.y0 + 1};
@@ -185,7 +186,7 @@ bool is_within(const PixelRect& rect, const PixelRect& whole) {
   return rect.x0 >= whole.x0 && rect.y0 >= whole.y0 && rect.x1 <= whole.x1 && rect.y1 <= whole.y1;
 }
 
-/// Samples of all planes within a rectangle of the canvas.
+/// Counts the samples of all planes within a rectangle of the canvas.
 SampleSet count_samples(const ObjectMask& mask, const PixelRect& rect, const glm::ivec2& margin, Isa isa) {
   SampleSet set;
   PixelRect outermost = kNoPixels;

@@ -31,10 +31,10 @@ struct HiderPiece {
   int x0, x1;  ///< pixels of the column, both inclusive
   int y0, y1;  ///< rows of the band
   float nearest, farthest;
-  std::size_t words, keys;  ///< beginning of row y0; each row has a word, and a key for each x from x0 to x1
+  std::size_t words, keys;  ///< first word and key of row y0; a row has one word, and a key for each x from x0 to x1
 };
 
-/// The nearest object of a sample and the second nearest one.
+/// The keys of the nearest and the second nearest surface at a sample, and their objects.
 struct FrontTwo {
   float nearest, next;
   std::uint32_t nearest_object, next_object;
@@ -55,7 +55,7 @@ void combine(std::vector<HiddenSamples>& pairs) {
   pairs.resize(count);
 }
 
-/// Searches one band after another. For one thread; borrows everything.
+/// Finds the hiding pairs of one band after another. For one thread; borrows everything.
 class BandHiders {
  public:
   BandHiders(const PlacedScene& scene, const ObjectCanvas& canvas, std::span<const ObjectAccount> objects, Isa isa)
@@ -68,7 +68,7 @@ class BandHiders {
         columns_(std::size_t(canvas.view.width + kWordPixels - 1) / kWordPixels),
         fronts_(std::size_t(kBandRows) * kWordPixels) {}
 
-  /// Adds the hidden samples with one sample number, in the pixels of the band that begins at row y0.
+  /// Adds the hidden samples of one sample number in the band that begins at row y0.
   void find(std::size_t sample, int y0, HiderLists& lists) {
     offset_ = sample_offsets(canvas_.view.samples)[sample];
     band_ = {0, y0, canvas_.view.width - 1, std::min(y0 + kBandRows, canvas_.view.height) - 1};
@@ -122,7 +122,7 @@ class BandHiders {
     }
   }
 
-  /// `key_of` takes a place in 1/256 pixel.
+  /// `key_of(x, y)` returns the key at a position in 1/256 pixel.
   template <class KeyOf>
   void draw_row(int x0, int x1, int y, const KeyOf& key_of) {
     if (x0 >= x1) return;
@@ -131,7 +131,7 @@ class BandHiders {
     for (int i = 0; i < x1 - x0; ++i) row[i] = std::max(row[i], key_of(first + i * kSubPixels, at_y));
   }
 
-  /// Keeps the part of an object in a column of the plane.
+  /// Copies the part of an object in one column from the plane.
   void add_piece(std::uint32_t object, int word, const PixelRect& rect) {
     HiderPiece piece{object,
                      std::max(rect.x0 - word * kWordPixels, 0),

@@ -36,16 +36,16 @@ using zbuffer_detail::HWY_NAMESPACE::RangeOf;
 
 using DD = hn::ScalableTag<double>;
 using VD = hn::Vec<DD>;
-constexpr std::size_t kMaxRows = hn::MaxLanes(DD());  // rows found at once
+constexpr std::size_t kMaxRows = hn::MaxLanes(DD());  // rows whose spans are found at once
 
 /// The corners of a triangle, ordered so that its area is positive.
 struct MaskTriangle {
   std::int32_t x[3], y[3];
 };
 
-/// The bound of spans at an edge that is not level, as a linear function of the row, in pixels.
+/// The bound that an edge sets for spans, as a linear function of the row, in pixels. The edge is not level.
 struct SpanSide {
-  double numerator, step;  ///< at the first row, and per row; integers, less half a unit
+  double numerator, step;  ///< numerator at the first row, an integer less 1/2, and its change per row
   double inverse;
 };
 
@@ -61,7 +61,7 @@ class SpanFinder {
   [[nodiscard]] int first() const { return first_; }
   [[nodiscard]] int last() const { return last_; }
 
-  /// Calls visit(row, begin, end) for vectors of rows that begin at `row`.
+  /// Calls visit(row, begin, end) for one vector of rows after another; `row` is the first row of the vector.
   template <class Visit>
   HWY_INLINE void ForRows(const Visit& visit) const {
     const DD d;
@@ -86,7 +86,8 @@ class SpanFinder {
     const int n = k == 2 ? 0 : k + 1;
     const double dx = t.x[n] - t.x[k], dy = t.y[n] - t.y[k];
     if (dy == 0) {
-      // A level edge: nothing above it is covered, and a lower edge excludes its own points.
+      // A level edge bounds no span, since rows beyond it are not visited. But a lower level edge excludes its own
+      // points, and so a row that lies exactly on it.
       if (dx < 0 && last_ * 256 + plane.place.y == t.y[k]) --last_;
       return;
     }
@@ -132,12 +133,13 @@ void MarkTriangle(const MaskPlane& plane, const MaskTriangle& triangle) {
   });
 }
 
-/// Marks small triangles, a vector of them in step, one row of each at a time.
+/// Marks small triangles, as many at once as a vector holds, and in each step one row of every triangle.
 class SmallMarker {
  public:
   /// Triangles larger than this, in pixels, are marked one by one. The edge values of smaller ones fit into 32 bits.
-  /// Their lower 8 bits decide nothing; without these they fit into floats. Over 64 pixels a quotient is wrong by less
-  /// than 2^-16; with half a unit subtracted it is at least 2^-15 away from any integer.
+  /// The lower 8 bits of an edge value decide nothing; without these bits the values fit into floats. Over 64 pixels a
+  /// quotient is wrong by less than 2^-16. With half a unit subtracted, a quotient is at least 2^-15 away from any
+  /// integer.
   static constexpr std::int32_t kMostPixels = 62, kMostRows = 32;
 
   SmallMarker(const MaskPlane& plane, const BatchColumns& columns) : plane_(plane), columns_(columns) {}
@@ -187,9 +189,9 @@ class SmallMarker {
     }
   }
 
-  /// The value of an edge at pixel x, from the left, is n + s x. `edge` is -(n + 1/2), `step` the growth of n per row,
-  /// and the edge is crossed at edge * inverse. A level edge counts as a left edge that is crossed far away: to the
-  /// left if the row lies inside of it, otherwise to the right.
+  /// An edge has the value n + s x at pixel x, counted from left_. `edge` is -(n + 1/2), `step` is the growth of n per
+  /// row, and the edge is crossed at x = edge * inverse. A level edge counts as a left edge that is crossed far away:
+  /// to the left if the row lies inside of the edge, otherwise to the right.
   HWY_INLINE void SetUpEdge(int k, VF& edge, VF& step, VF& inverse, MF& is_left) const {
     const DI d;
     const DF df;

@@ -16,7 +16,7 @@ using namespace zbuffer_detail;
 
 namespace {
 
-constexpr int kLargestCanvas = 2 * kGuardBand / kSubPixels;  // pixels; triangles are clipped beyond
+constexpr int kLargestCanvas = 2 * kGuardBand / kSubPixels;  // pixels; triangles that reach farther are clipped
 
 int margin_of(int size, double scale) { return int(std::min((scale - 1) / 2 * size, (kLargestCanvas - size) / 2.0)); }
 

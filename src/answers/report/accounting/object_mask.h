@@ -28,7 +28,7 @@ using zbuffer_detail::TriangleRecord;
 /// Number of pixels in a word of the canvas.
 inline constexpr int kWordPixels = 64;
 
-/// A rectangle without pixels; around() of it and another one is the other one.
+/// A rectangle without pixels, the neutral element of around().
 inline constexpr PixelRect kNoPixels{1 << 30, 1 << 30, -1, -1};
 /// The smallest rectangle around two others.
 [[nodiscard]] inline PixelRect around(const PixelRect& a, const PixelRect& b) {
@@ -71,8 +71,8 @@ class SeenRows {
     if (begin_.size() <= count) begin_.resize(count + 1, std::uint32_t(runs_.size()));
   }
 
-  std::size_t words_across_, row_count_ = 0;  // closed rows
-  std::vector<std::uint32_t> begin_;          // by row and word, and the end of the last closed one
+  std::size_t words_across_, row_count_ = 0;  // complete rows
+  std::vector<std::uint32_t> begin_;          // index of the first run, by row and word; then the number of runs
   std::vector<SeenRun> runs_;
 };
 
@@ -93,13 +93,13 @@ struct SeenObjects {
   }
 };
 
-/// The samples at the beginning of a row that see the same object.
+/// The number of samples at the beginning of a row that see the same object, and the nearest of their keys.
 struct SeenSpan {
   std::size_t end = 0;
-  float nearest = 0;  ///< the greatest key
+  float nearest = 0;  ///< the greatest of their keys
 };
 
-/// The number of ids at the beginning that lie in [first, first + count). `keys` has as many elements as `ids`.
+/// Finds how many ids at the beginning lie in [first, first + count). `keys` has as many elements as `ids`.
 [[nodiscard]] SeenSpan find_seen_span(std::span<const PrimitiveId> ids, const float* keys, PrimitiveId first,
                                       std::uint32_t count, Isa isa);
 
@@ -143,7 +143,7 @@ void mark_spans(const MaskPlane& plane, const RowSpans& spans, Isa isa);
 [[nodiscard]] MarkedSamples count_marked(const MaskPlane& plane, const PixelRect& rect, Isa isa);
 /// Number of bits that two lists of words have in common. Precondition: both have the same length.
 [[nodiscard]] std::uint64_t count_common(std::span<const std::uint64_t> a, std::span<const std::uint64_t> b, Isa isa);
-/// Adds to the count of every object the samples that see it and are marked, within a part of the picture.
+/// Adds to the count of each object the number of marked samples that see the object, in a rectangle of the picture.
 void count_seen(const MaskPlane& plane, const PixelRect& rect, const SeenObjects& seen, SampleCounts& counts, Isa isa);
 
 /// The picture and its surroundings. Vertices have the picture's positions, to the bit, shifted by the margin.
@@ -199,7 +199,7 @@ class ObjectMask {
  public:
   ObjectMask(const PlacedScene& scene, const ObjectCanvas& canvas, Isa isa);
 
-  /// Marks what the object covers. Replaces the mask of the object before.
+  /// Marks the samples that an object covers. The mask of the previous object is lost.
   void draw(std::uint32_t object);
 
   /// One plane for each sample number.
@@ -233,14 +233,14 @@ class ObjectMask {
   bool is_cut_by_near_ = false;
 };
 
-/// Pairs of objects, ordered by object, then by hider, each pair once.
+/// Pairs of an object and its hider, ordered by object, then by hider, each pair once.
 struct HiderLists {
-  std::vector<HiddenSamples> any;   ///< by every object in front of it
-  std::vector<HiddenSamples> only;  ///< by a single object: samples that appear when it is removed
+  std::vector<HiddenSamples> any;   ///< samples that the hider covers in front of the object
+  std::vector<HiddenSamples> only;  ///< samples that only this hider hides: they appear when it is removed
 };
 
-/// All hiding pairs of objects. `canvas` has no margin; `objects[i].in_frame` holds all that object i covers in the
-/// picture. O(bands * triangles in them + covered samples + pairs of objects in a column).
+/// Finds all hiding pairs of objects. `canvas` has no margin; `objects[i].in_frame` is the set of samples that object i
+/// covers in the picture. O(bands * triangles in them + covered samples + pairs of objects in a column).
 [[nodiscard]] HiderLists find_all_hiders(const PlacedScene& scene, const ObjectCanvas& canvas,
                                          std::span<const ObjectAccount> objects, const Execution& execution);
 

@@ -22,7 +22,7 @@ bool is_in(MaskPixel pixel, MaskPart part) {
   return pixel == MaskPixel::visible || (part == MaskPart::whole && pixel == MaskPixel::hidden);
 }
 
-/// Appends five bits a character, the lowest first; the fifth bit of the last character is the sign.
+/// Appends a number, five bits a character, the lowest bits first; the fifth bit of the last character is the sign.
 void append_number(std::int64_t value, std::string& text) {
   for (bool more = true; more;) {
     const std::int64_t low = value & 31;
@@ -32,7 +32,8 @@ void append_number(std::int64_t value, std::string& text) {
   }
 }
 
-/// Pixels [x0, x1) of a row and the sides of their polygon, from the top, x and y alternating.
+/// Pixels [x0, x1) of a row, and the left and right sides of their polygon so far: corners from the top, x and y
+/// alternating.
 struct MaskRun {
   int x0, x1;
   std::vector<int> left{}, right{};
@@ -64,7 +65,7 @@ MaskRun* only_touched(std::vector<MaskRun>& runs, const MaskRun& by) {
   return found;
 }
 
-/// The polygon in one order: down its right side and up its left one.
+/// The finished polygon of a run that ends at y: down the right side and up the left side.
 std::vector<int> closed_polygon(MaskRun& run, int y) {
   std::vector<int> polygon = std::move(run.right);
   polygon.insert(polygon.end(), {run.x1, y, run.x0, y});
@@ -73,7 +74,7 @@ std::vector<int> closed_polygon(MaskRun& run, int y) {
   return polygon;
 }
 
-/// Continues the polygon of the run above with another run below y.
+/// Continues the polygon of the run `above` with `run`, the run below it; y is the border between the two rows.
 void go_on(MaskRun& above, MaskRun& run, int y) {
   run.left = std::move(above.left);
   run.right = std::move(above.right);

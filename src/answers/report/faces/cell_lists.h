@@ -22,7 +22,7 @@ namespace frontmost::faces_detail {
 using ListedFace = std::uint64_t;
 
 [[nodiscard]] inline std::uint32_t face_of(ListedFace listed) { return std::uint32_t(listed); }
-/// The order of a key: greater keys have lesser orders, or the same.
+/// A number by which keys are ordered: a greater key has a lesser or equal order.
 [[nodiscard]] inline std::uint32_t order_of(double key) {
   const float rounded = float(key) + 0.0f;  // turns -0 into 0
   std::uint32_t bits;
@@ -30,7 +30,7 @@ using ListedFace = std::uint64_t;
   return (bits >> 31) != 0 ? bits : ~bits & 0x7FFFFFFFu;
 }
 
-/// A key that no key of this order, or of a greater one, exceeds.
+/// A key that is not exceeded by any key of this order or a greater one.
 [[nodiscard]] inline double key_before(std::uint32_t order) {
   const std::uint32_t bits = (order >> 31) != 0 ? order : ~order & 0x7FFFFFFFu;
   float rounded;
@@ -89,11 +89,11 @@ class CellLists {
   [[nodiscard]] const std::vector<std::uint32_t>& beyond_picture() const { return beyond_picture_; }
 
  private:
-  /// Side of the largest cells, in pixels.
+  /// Side length of the largest cells, in pixels.
   static constexpr int kLargestCell = 32;
   static constexpr int kPart = kLargestCell / int(parts_along);
 
-  /// A rectangle of parts of cells, inclusive.
+  /// A rectangle of parts of cells: first and last column, first and last row.
   struct Span {
     std::uint32_t left, right, top, bottom;
   };
@@ -125,7 +125,7 @@ class CellLists {
   std::vector<std::uint32_t> beyond_picture_;
 };
 
-/// Faces in buckets by their order, unordered within each bucket, in linear time.
+/// Sorts faces into buckets by their order, in linear time. Faces within a bucket are unordered.
 class RoughOrder {
  public:
   void sort(std::span<const ListedFace> listed) {
@@ -159,7 +159,7 @@ class RoughOrder {
 
   /// Number of buckets. None of them is empty.
   [[nodiscard]] std::size_t size() const { return ends_.size(); }
-  /// The least order in a bucket, and so in it and all later ones.
+  /// The least order in a bucket. No later bucket has a lesser order.
   [[nodiscard]] std::uint32_t least(std::size_t bucket) const { return least_[bucket]; }
   /// The faces, bucket after bucket.
   [[nodiscard]] const std::vector<ListedFace>& faces() const { return sorted_; }

@@ -10,7 +10,7 @@ namespace {
 /// Kept triangles, with new numbers for their corners.
 struct KeptCorners {
   std::vector<glm::uvec3> triangles;
-  std::vector<std::uint32_t> values;  ///< the old numbers, ascending, by new number
+  std::vector<std::uint32_t> values;  ///< old number of each new number, ascending
 };
 
 KeptCorners kept_corners(std::size_t value_count, const std::vector<glm::uvec3>& corners,

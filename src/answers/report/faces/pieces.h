@@ -17,7 +17,7 @@
 
 namespace frontmost::faces_detail {
 
-/// A face of one of the largest cells. Such faces lie side by side in memory.
+/// A face that meets one of the largest cells. The gathered faces of a cell lie side by side in memory.
 struct GatheredFace {
   ScreenPoint corners[3];
   Range x, y;  ///< extent of the whole face, also outside the cell
@@ -25,7 +25,7 @@ struct GatheredFace {
   std::uint8_t ending;
 };
 
-/// A face over a box of the picture. All its keys there lie between the farthest and the nearest one.
+/// A face over a box of the picture. The keys of the face within the box lie between `farthest` and `nearest`.
 struct FaceInBox {
   double nearest, farthest;
   std::uint32_t number;  ///< index of a gathered face
@@ -58,7 +58,7 @@ struct AffineKey {
   [[nodiscard]] double at(const glm::dvec2& p) const { return key + ((p.x - x) * along_x + (p.y - y) * along_y); }
 };
 
-/// Cuts one box after another and keeps its memory.
+/// Finds the visible parts in one box after another, and reuses its memory.
 class PieceCutter {
  public:
   /// Calls `tell(steps)` after many steps of about ten nanoseconds each.
@@ -93,8 +93,8 @@ class PieceCutter {
     }
   }
 
-  /// Finds the nearest face that covers all of `box`. Moves faces that lie behind it there, or in its plane with a
-  /// greater id, to the end of `list`. \returns how many are left.
+  /// Finds the nearest face that covers all of `box`. Moves the faces that lie behind it in the box, and those in its
+  /// plane with a greater id, to the end of `list`. \returns the number of faces before them.
   [[nodiscard]] std::size_t leave_out_covered(const CellBox& box, std::span<FaceInBox> list,
                                               std::span<const GatheredFace> gathered) {
     const ConvexPiece corners(box);
@@ -148,14 +148,14 @@ class PieceCutter {
   }
 
  private:
-  /// Keys that differ by at most this share of themselves may be equal; doubles are exact to about 2^-45.
+  /// Keys that differ by at most this share may be equal; doubles are exact to about 2^-45.
   static constexpr double kAlike = 1.0 / (1ll << 36);
   /// More faces than this are reordered before they are cut. Finding the order takes time, and pays if most faces
   /// overlap.
   static constexpr std::size_t kManyToCut = 128;
 
-  /// Costs in steps of about ten nanoseconds: examining a face for a piece; cutting by a face or comparing two; testing
-  /// by exact signs whether a face lies in a plane; keeping a visible part.
+  /// Costs in steps of about ten nanoseconds: of examining a face for a piece; of cutting by a face or comparing two
+  /// faces; of testing by exact signs whether a face lies in a plane; and of keeping a visible part.
   static constexpr std::uint64_t kStepsOfLook = 1, kStepsOfCut = 8, kStepsOfPlane = 32, kStepsOfPart = 64;
 
   struct Candidate {
@@ -212,9 +212,9 @@ class PieceCutter {
             no_index};
   }
 
-  /// Measures all keys relative to the plane of the first face, and reorders the faces. In a slanted box, keys of close
-  /// sheets differ much more from end to end than from sheet to sheet. Faces in one plane are ordered by id, so that
-  /// each hides those after it.
+  /// Measures all keys relative to the plane of the first face, and reorders the faces. In a box of slanted surfaces,
+  /// the keys of one surface differ much more from end to end than those of close surfaces from each other. Faces in
+  /// one plane are ordered by id, so that each hides those after it.
   void order_by_planes(const CellBox& box) {
     count(kStepsOfPlane * candidates_.size());
     const AffineKey first = candidates_.front().plane;
@@ -261,7 +261,7 @@ class PieceCutter {
     }
   }
 
-  /// Examines the remaining faces for a piece. The parts beside a face are put aside for later.
+  /// Examines the remaining faces for a piece. Parts of the piece outside of a face are put aside for later.
   void finish(Piece& piece, std::vector<SeenPart>& seen) {
     double farthest = -std::numeric_limits<double>::infinity();  // key of the front face
     if (piece.front != no_index) farthest = candidates_[piece.front].farthest;
@@ -298,7 +298,8 @@ class PieceCutter {
     return true;
   }
 
-  /// Keeps the polygon that make(polygon) makes for later, unless it is narrow. \returns whether it is kept.
+  /// Puts the polygon that make(polygon) makes aside for later, unless the polygon is narrow. \returns whether it is
+  /// kept.
   template <class Make>
   bool put_aside(std::uint32_t front, std::uint32_t next, const Make& make) {
     Piece& piece = pieces_.emplace_back(front, next);
@@ -311,7 +312,8 @@ class PieceCutter {
     return is_kept;
   }
 
-  /// Cuts off the part of a piece beside a face. \returns whether anything is left; if not, the piece is unchanged.
+  /// Reduces a piece to the part inside a face; the rest is put aside. \returns false if nothing lies inside; the piece
+  /// is then unchanged.
   bool cut_to(const Candidate& face, Piece& piece) {
     std::array<LineDistances, 3> distances;
     bool is_within = true;
@@ -346,8 +348,8 @@ class PieceCutter {
     return true;
   }
 
-  /// Compares a face that covers the whole piece with the front face. The piece keeps the part where one of them is
-  /// nearer; the other part is put aside.
+  /// Compares a face that covers the whole piece with the front face. If each is nearer in a part of the piece, the
+  /// piece keeps the part where the new face is nearer, and the other part is put aside.
   void choose_nearer(std::uint32_t number, Piece& piece) {
     if (piece.front == no_index) {
       piece.front = number;
@@ -355,7 +357,7 @@ class PieceCutter {
     }
     const AffineKey &plane = candidates_[number].plane, &front = candidates_[piece.front].plane;
     const double along_x = plane.along_x - front.along_x, along_y = plane.along_y - front.along_y;
-    // The difference of both keys, as the distance from the line where they are equal.
+    // The difference of both keys is proportional to the distance from the line where they are equal.
     const auto difference = [&](const glm::dvec2& p) { return plane.at(p) - front.at(p); };
     LineDistances nearer;
     nearer.measure(piece.polygon, difference, kNarrow * std::sqrt(along_x * along_x + along_y * along_y));
@@ -385,8 +387,8 @@ class PieceCutter {
     piece.front = number;
   }
 
-  /// Decides between two faces that doubles cannot tell apart: the lower id if they lie in one plane, else the one that
-  /// seems nearer.
+  /// Decides between two faces that doubles cannot tell apart: the lower id if the faces lie in one plane, else the
+  /// face that seems nearer.
   bool is_preferred(const Candidate& face, const Candidate& front, const LineDistances& nearer) {
     count(kStepsOfPlane);
     const PrimitiveId id = faces_.screen.faces[face.face].id, front_id = faces_.screen.faces[front.face].id;

@@ -64,7 +64,7 @@ class ConvexPiece {
   int count_ = 0;
 };
 
-/// Whether a polygon is nowhere wider than kNarrow, or hardly.
+/// Whether a polygon is nowhere wider than about kNarrow.
 [[nodiscard]] inline bool is_narrow(const ConvexPiece& polygon) {
   if (polygon.size() < 3) return true;
   const glm::dvec2* const p = polygon.begin();

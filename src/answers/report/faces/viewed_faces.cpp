@@ -26,10 +26,10 @@ EdgeNeighbours mesh_sides(const Mesh& mesh, const Execution& execution) {
   return {triangles, mesh.positions.size(), execution};
 }
 
-/// Triangles that extend farther beyond the picture than this, in pixels, are clipped, so that doubles keep positions
+/// Distance from the picture, in pixels. Triangles that extend farther are clipped, so that doubles keep positions
 /// exact within the picture.
 constexpr double kBeyond = 65536;
-/// Distance of the cut from the picture, in pixels.
+/// Distance from the picture at which such triangles are cut, in pixels.
 constexpr double kRim = 64;
 
 /// Bits for the regions in which a vertex lies.
@@ -193,7 +193,8 @@ class VerticesOfView {
   std::vector<std::size_t> first_;
 };
 
-/// Faces of some ranges. Corner numbers from the number of all vertices on refer to `clipped`.
+/// The faces of some ranges of triangles. Corner numbers that are not below the number of all vertices refer to
+/// `clipped`.
 struct FacePart {
   std::vector<ViewedFace> faces;
   std::vector<ScreenPoint> clipped;
@@ -202,7 +203,7 @@ struct FacePart {
 /// Gathers the faces of consecutive triangles.
 class FaceGatherer {
  public:
-  /// `facing` is by primitive, 0 for triangles that are not seen, or not whole.
+  /// `facing` has an entry for each primitive: 0 for triangles that are not seen, or not whole.
   FaceGatherer(const PlacedScene& placed, const Eye& eye, Culling culling, const VerticesOfView& vertices,
                std::vector<std::int8_t>& facing)
       : placed_(placed), eye_(eye), rule_(culling, placed.sides.get()), vertices_(vertices), facing_(facing) {}

@@ -17,11 +17,12 @@
 
 namespace frontmost::faces_detail {
 
-/// Width in pixels, 2^-30, below which parts are not told apart from their neighbours. Doubles are exact to about 2^-38
+/// Width in pixels, 2^-30. Narrower parts are not told apart from their neighbours. Doubles are exact to about 2^-38
 /// pixel.
 inline constexpr double kNarrow = 1.0 / (1 << 30);
 
-/// A place in the picture, in pixels, and the key of the surface there: affine over the screen, greater for nearer.
+/// A place in the picture, in pixels, and the key of a surface there. Keys are affine over the screen and greater for
+/// nearer surfaces.
 struct ScreenPoint {
   double x, y, key;
 };
@@ -44,8 +45,8 @@ struct ViewedFace {
 };
 
 struct ViewedFaces {
-  Buffer<ScreenPoint> points;   ///< vertices, by instance and number, then points of clipped triangles
-  Buffer<ViewedFace> faces;     ///< by id, ascending; parts of one triangle follow each other
+  Buffer<ScreenPoint> points;   ///< vertices, by instance and number; then the points of clipped triangles
+  Buffer<ViewedFace> faces;     ///< by id, ascending; the parts of one triangle are consecutive
   Buffer<std::uint8_t> ending;  ///< by face, bit k: a surface ends at side k, from corner k to the next
 };
 
@@ -54,17 +55,18 @@ struct ViewedFaces {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// The triangles beyond the sides of the triangles of each mesh that has an instance. Vertices at one place are one,
-/// whatever their numbers. \throws Error limit_exceeded for more than EdgeNeighbours::most_triangles.
+/// The triangles beyond the sides of the triangles of each mesh that has an instance. Vertices at one place count as
+/// one, whatever their numbers. \throws Error limit_exceeded for more than EdgeNeighbours::most_triangles.
 [[nodiscard]] std::vector<EdgeNeighbours> sides_of_meshes(const Scene& scene, const Execution& execution);
 
-/// The faces that are at least partly within the picture, between near and far, wider than kNarrow, and not culled.
-/// `sides` is by mesh.
+/// The faces that lie at least partly within the picture, between near and far, are wider than kNarrow and are not
+/// culled. `sides` has an entry for each mesh.
 [[nodiscard]] ViewedFaces viewed_faces(const Surfaces& surfaces, const View& view,
                                        const std::vector<EdgeNeighbours>& sides, const Execution& execution);
 
-/// The visible faces by id, ascending. `sides` is by mesh. O(faces + cells in which surfaces end). \throws Error
-/// limit_exceeded for more than `most_steps` steps of about ten nanoseconds, and 64 more for each face of the view.
+/// The visible faces by id, ascending. `sides` has an entry for each mesh. O(faces + cells in which surfaces end).
+/// \throws Error limit_exceeded for more than `most_steps` steps of about ten nanoseconds, and 64 more for each face of
+/// the view.
 [[nodiscard]] std::vector<VisibleFace> find_faces(const Surfaces& surfaces, const View& view,
                                                   const std::vector<EdgeNeighbours>& sides, std::uint64_t most_steps,
                                                   const Execution& execution);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Visible faces cell by cell of the picture: at once in cells where no relevant surface ends, else in smaller cells.
+// The visible faces, found cell by cell of the picture: at once in cells where no relevant surface ends, else in
+// smaller cells.
 //
 //   Surfaces --viewed_faces()--> faces on the screen --cells--> parts of them --added up--> VisibleFaces
 //
@@ -26,34 +27,34 @@
 namespace frontmost::faces_detail {
 namespace {
 
-/// Side of the smallest cells, in pixels.
+/// Side length of the smallest cells, in pixels.
 constexpr double kSmallestCell = 1.0 / 1024;
-/// A cell with at most this number of faces is not divided: its faces are cut by each other.
+/// A cell with at most this number of faces is not divided. The faces cut each other instead.
 constexpr std::size_t kFewFaces = 128;
-/// A cell with more faces than this is divided even if most of them reach into all of its parts: they hide each other
-/// there.
+/// A cell with more faces than this is divided even if most of them reach into all of its parts, because the faces hide
+/// each other in the parts.
 constexpr std::size_t kManyFaces = 256;
 /// The largest cells with more faces than this are divided before their faces are examined.
 constexpr std::size_t kManyListed = 500;
 /// Cells with more faces than this are divided into 4 x 4 at once.
 constexpr std::size_t kCrowd = 300;
 
-/// Cells with more faces than this, all of which its parts would have as well, are not divided at any size.
+/// A cell of any size with more faces than this is not divided if all of its parts would have these faces as well.
 constexpr std::size_t kManySides = 1024;
 /// Cost of entering a face into the list of a cell and of ordering the list, in steps of about ten nanoseconds.
 constexpr std::uint64_t kStepsInCell = 8;
-/// If more faces than this cover a cell and their ranges of keys do not order them, their planes do.
+/// If more faces than this cover a cell, and the ranges of their keys leave their order open, their planes order them.
 constexpr std::size_t kManyCovers = 32;
 
-constexpr double kNever = -std::numeric_limits<double>::infinity();  ///< a key with nothing behind it
+constexpr double kNever = -std::numeric_limits<double>::infinity();  ///< nearest key if there are no faces
 
-/// A face of which the part within a cell is seen, and which extends beyond the cell.
+/// A face whose part within a cell is seen, and which extends beyond the cell.
 struct ToldPart {
   std::uint32_t face;
   CellBox box;
 };
 
-/// Findings of cells about faces. Any cell may set them at any time.
+/// Facts that cells find out about faces. Any thread may set them at any time.
 class FaceMarks {
  public:
   explicit FaceMarks(std::size_t count) : seen_(new Mark[count]()), partial_(new Mark[count]()) {}
@@ -62,7 +63,7 @@ class FaceMarks {
   void set_seen(std::uint32_t face) { seen_[face].store(kSeen, std::memory_order_relaxed); }
   /// The face is seen in the one cell in which it lies.
   void set_whole(std::uint32_t face) { seen_[face].store(kWhole, std::memory_order_relaxed); }
-  /// The face may be hidden somewhere, or outside the picture, unless it is seen in the one cell in which it lies.
+  /// Some part of the face may be hidden, or lie outside the picture. Ignored if set_whole() is called for the face.
   void set_partial(std::uint32_t face) { partial_[face].store(1, std::memory_order_relaxed); }
   [[nodiscard]] bool is_partial(std::uint32_t face) const {
     return partial_[face].load(std::memory_order_relaxed) != 0;
@@ -93,12 +94,12 @@ void sort_nearly_sorted(Iterator begin, Iterator end, const Before& before) {
   }
 }
 
-/// A place in a box, away from the middle, through which the sides of symmetric models pass.
+/// A place in a box, away from the middle, because the sides of symmetric models often pass through the middle.
 glm::dvec2 place_in(const CellBox& box) {
   return {box.left + 0.4372 * (box.right - box.left), box.top + 0.5611 * (box.bottom - box.top)};
 }
 
-/// Solves one of the largest cells after another.
+/// Finds the visible parts in one of the largest cells after another.
 class CellSolver {
  public:
   CellSolver(const FacesOfView& faces, FaceMarks& marks, const std::function<void(std::uint64_t)>& tell)
@@ -131,7 +132,7 @@ class CellSolver {
   std::vector<ToldPart> told;
 
  private:
-  /// Findings about an ordered list of a cell. Faces from `kept` on are hidden. If `is_told`, all faces before are
+  /// Facts about the ordered list of a cell. Faces from `kept` on are hidden. If `is_told`, all faces before `kept` are
   /// seen. No face that was left out of the list is nearer than `removed`.
   struct Sorted {
     std::size_t kept;
@@ -139,10 +140,10 @@ class CellSolver {
     double removed;
   };
 
-  /// The last group of the list, while the list grows from the nearest face on.
+  /// The last group of a list that is being filled from the nearest face on.
   struct LastGroup {
     std::size_t begin, looked_at;
-    double covered = kNever;  ///< nearest of the farthest keys of faces that cover the cell
+    double covered = kNever;  ///< among the faces that cover the cell, the greatest of their farthest keys
     double farthest = -kNever;
     bool is_ending = false;
   };
@@ -152,7 +153,7 @@ class CellSolver {
     gathered_.clear();
     divide(box, 0, gather_nearest(box, part));
   }
-  /// Fills the list with faces of some parts, the nearest first, until the remaining faces are hidden. \returns the
+  /// Fills the list with the faces of some parts, the nearest first, until the remaining faces are hidden. \returns the
   /// nearest key of the remaining faces.
   double gather_nearest(const CellBox& box, std::uint16_t part) {
     const glm::dvec2 place = place_in(box);
@@ -170,7 +171,8 @@ class CellSolver {
     return kNever;
   }
 
-  /// Whether a group that lies in front of all faces not yet in the list hides them. If not, a new group begins.
+  /// Whether a group hides all faces that are not yet in the list. All of these lie behind the group. If it does not
+  /// hide them, a new group begins.
   bool hides_rest(LastGroup& group, const glm::dvec2& place) {
     if (!group.is_ending && count_at(place, group.begin, list_.size()) > 0) return true;
     group = {list_.size(), list_.size(), group.covered};
@@ -186,8 +188,8 @@ class CellSolver {
     }
   }
 
-  /// Adds faces of a larger cell, the nearest first, until the remaining faces are hidden: all from `end` on. \returns
-  /// the nearest key of the remaining faces.
+  /// Adds faces of a larger cell to the list, the nearest first, until the remaining faces are hidden. `end` becomes
+  /// the number of the first remaining face. \returns the nearest key of the remaining faces.
   template <class Index>
   double add_nearest(const CellBox& box, double removed, std::size_t& end, const Index& index) {
     const glm::dvec2 place = place_in(box);
@@ -219,7 +221,7 @@ class CellSolver {
     const Range &x = gathered.x, &y = gathered.y;
     if (x.high <= box.left || x.low >= box.right || y.high <= box.top || y.low >= box.bottom) return;
     list_.push_back(face);
-    // A face that lies wholly in the cell did so in all larger cells, and gather() has set all of its values.
+    // A face that lies wholly in this cell lay wholly in all larger cells, too, so gather() has set all of its values.
     const bool is_inside = x.low >= box.left && x.high <= box.right && y.low >= box.top && y.high <= box.bottom;
     if (!is_inside && !reaches_into(box, list_.back())) list_.pop_back();
   }
@@ -272,8 +274,8 @@ class CellSolver {
     list_.resize(first);
   }
 
-  /// Divides a cell into four. \returns false if that would not help: the cell is too small, or most of its faces reach
-  /// into all parts.
+  /// Divides a cell into four. \returns false if division would not help, because the cell is too small or most of its
+  /// faces reach into all parts.
   bool divide_further(const CellBox& box, std::size_t first, double removed) {
     const double size = std::max(box.right - box.left, box.bottom - box.top);
     if (size <= kSmallestCell) return false;
@@ -294,7 +296,7 @@ class CellSolver {
       if (count > kManySides) nearest[k] = std::max(nearest[k], drop_covered(parts_of_box[k], begins[k]));
       pairs += (list_.size() - begins[k]) * (list_.size() - begins[k]);
     }
-    // If sides lie along one line, very small cells hold as many of them as larger ones.
+    // Where many sides lie along one line, even very small cells hold as many of these sides as larger cells.
     const bool helps = count > kManyFaces ? pairs < count * count : list_.size() - last < 3 * count;
     if (!helps && (count <= kManyFaces || count > kManySides || size <= 1)) {
       list_.resize(last);
@@ -302,12 +304,12 @@ class CellSolver {
     }
     for (std::size_t i = last - left_out; i < last; ++i) marks_.set_partial(gathered_[list_[i].number].face);
     for (std::size_t k = 4; k-- > 0;)
-      divide(parts_of_box[k], begins[k], nearest[k]);  // the last list is finished first
+      divide(parts_of_box[k], begins[k], nearest[k]);  // the last list is finished first, since finishing removes it
     return true;
   }
 
-  /// Divides a cell into 4 x 4, at first by the boxes of its faces. \returns false if very many of these boxes meet all
-  /// parts.
+  /// Divides a cell into 4 x 4 parts, at first by the boxes of its faces. \returns false if very many of these boxes
+  /// meet all parts.
   bool divide_crowd(const CellBox& box, std::size_t first, double removed) {
     constexpr int kAlong = 4;
     const double width = (box.right - box.left) / kAlong, height = (box.bottom - box.top) / kAlong;
@@ -344,8 +346,8 @@ class CellSolver {
     return true;
   }
 
-  /// Drops faces hidden by a face that covers the cell, if very many faces cover it. \returns the nearest key of the
-  /// dropped faces.
+  /// If very many faces cover the cell, drops the faces that one of them hides. \returns the nearest key of the dropped
+  /// faces.
   double drop_covered(const CellBox& box, std::size_t first) {
     const std::span<FaceInBox> list = std::span(list_).subspan(first);
     const auto covers = [](const FaceInBox& face) { return face.is_all; };
@@ -357,7 +359,7 @@ class CellSolver {
     return nearest;
   }
 
-  /// Orders the list by nearest keys, and derives what the order shows.
+  /// Orders the list by nearest keys, and finds out which faces are surely hidden or seen.
   Sorted sort(const CellBox& box, std::size_t first, double removed) {
     const auto begin = list_.begin() + std::ptrdiff_t(first);
     // Faces behind a face that covers the whole cell need not be ordered.
@@ -383,8 +385,8 @@ class CellSolver {
         farthest = std::min(farthest, list_[i].farthest);
         is_ending = is_ending || list_[i].is_ending;
       }
-      // A group that reaches back to removed faces may be incomplete: one of its surfaces may pass through the face
-      // that covers the cell. The same holds for all groups behind it.
+      // A group whose farthest key is not nearer than a removed face may be incomplete: one of its surfaces may pass
+      // through the face that covers the cell. The same holds for all groups behind it.
       if (removed >= farthest) break;
       if (!is_ending) {
         const int count = count_at(place, group, i);
@@ -395,7 +397,8 @@ class CellSolver {
     return {list_.size() - first, false, removed};
   }
 
-  /// Keeps the first of faces with the same corners. Copies are neighbours in the list, since they are equally near.
+  /// Keeps the first of several faces with the same corners. Copies are neighbours in the list, since they are equally
+  /// near.
   void leave_out_copies(std::size_t first) {
     const auto corner = [&](std::size_t i, int k) -> const ScreenPoint& {
       return gathered_[list_[i].number].corners[k];
@@ -417,7 +420,8 @@ class CellSolver {
     list_.resize(kept);
   }
 
-  /// The number of faces in a part of the list that contain a place; -1 if the place lies on the rim of one.
+  /// The number of faces that contain a place, among those of a part of the list; -1 if the place lies on the rim of a
+  /// face.
   int count_at(const glm::dvec2& place, std::size_t first, std::size_t last) const {
     int count = 0;
     for (std::size_t i = first; i < last; ++i) {
@@ -452,7 +456,7 @@ class CellSolver {
     }
   }
 
-  /// Removes the list from `first` on: its faces are not seen in the cell, or only partly.
+  /// Removes the list from `first` on. The removed faces are hidden in the cell, or seen only in part.
   void drop(std::size_t first) {
     for (std::size_t i = first; i < list_.size(); ++i) marks_.set_partial(gathered_[list_[i].number].face);
     list_.resize(first);
@@ -463,13 +467,13 @@ class CellSolver {
   PieceCutter cutter_;
   RoughOrder order_;
   std::vector<std::uint16_t> parts_of_faces_;  ///< by face of `order_`: parts of the cell that its box meets, as bits
-  std::size_t least_looked_at_ = 0;            ///< faces from here on in the order are hidden in some part
+  std::size_t least_looked_at_ = 0;            ///< from this face of the order on, faces are hidden in some part
   std::vector<GatheredFace> gathered_;
   std::vector<FaceInBox> list_;  ///< faces of the current cell, after those of the larger cells around it
   std::vector<std::uint32_t> members_;
 };
 
-/// The text of an error, which names the largest cell with the most faces.
+/// The text of the error, which names the largest cell that has the most faces.
 std::string too_many_faces(const CellLists& lists, const FacesOfView& faces, const View& view) {
   std::size_t fullest = 0;
   for (std::size_t cell = 0; cell < lists.size(); ++cell)
@@ -484,7 +488,7 @@ std::string too_many_faces(const CellLists& lists, const FacesOfView& faces, con
          " of object " + std::to_string(surfaces.source(id).instance) + "; leave out faces that lie there many times";
 }
 
-/// Visible parts of the faces of a view.
+/// The visible parts of the faces of a view.
 struct SeenParts {
   Buffer<std::uint8_t> is_whole;             ///< by face: all of it is seen; the face then has no parts
   std::vector<std::vector<SeenPart>> parts;  ///< parts of the other faces; a face may have several

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places the faces, bounds the errors that positions and floats add to their keys, and cuts the common area of two
-// faces twice. Cutting follows I. Sutherland, G. Hodgman. Reentrant Polygon Clipping. 1974.
+// Places the faces, bounds the errors that positions and floats add to their keys, and clips the common area of two
+// faces by two more lines. Clipping follows I. Sutherland, G. Hodgman. Reentrant Polygon Clipping. 1974.
 #include "report/fights/faces_at_risk.h"
 
 #include <array>
@@ -17,7 +17,7 @@ using namespace zbuffer_detail;
 constexpr int kBlock = 8;          // pixels
 constexpr double kUnit = 0x1p-24;  // unit roundoff of a float
 
-/// The errors of positions in a view.
+/// The errors that rounding and snapping cause in the positions of a view.
 class PlaceErrors {
  public:
   PlaceErrors(const ScreenTransform& t, const View& view)
@@ -38,12 +38,12 @@ class PlaceErrors {
   [[nodiscard]] double of_place(const TriangleRecord& r) const {
     const glm::dvec2 off = farthest(r) + shift_;
     const double scale = std::max(scale_.x, scale_.y);
-    // Rounded are a corner's differences to the eye, its products with the row, and their sums: 9 roundings in all, of
-    // x and of the distance by which x is divided.
+    // These numbers are rounded: a corner's differences to the eye, their products with the row, and the sums of the
+    // products. That makes 9 roundings at most for x, and as many for the distance by which x is divided.
     if (orthographic_) return 0.5 + 9 * kUnit * (scale * reach_ + off.x + off.y);
     return 0.5 + 9 * kUnit * slant(off) * (scale + std::max(off.x, off.y));
   }
-  /// Greatest change of a corner's key by rounding.
+  /// Greatest error of a corner's key by rounding.
   [[nodiscard]] double of_key(const TriangleRecord& r) const {
     const double made = 2 * double(r.nearest());
     if (orthographic_) return kUnit * (9 * reach_ / range_ + made);
@@ -66,7 +66,7 @@ class PlaceErrors {
   double reach_, range_;
 };
 
-/// The slopes of a triangle's key, its size, and the effect of moved corners.
+/// The slopes of a triangle's key, the triangle's size, and the effect of moved corners on the key.
 struct KeySlopes {
   double range, area, around;
   double x, y;  // slopes times the area, per 1/256 pixel
@@ -81,15 +81,16 @@ struct KeySlopes {
       y += double(r.key[k]) * (double(r.x[p]) - r.x[n]);
     }
   }
-  /// Greatest difference, at any sample, between the face's plane in the world and its plane on the screen.
+  /// Greatest difference at any sample between the keys of the face's plane in the world and of its plane on the
+  /// screen.
   [[nodiscard]] double of_moved_corners(double moved) const {
     const double lost = 2 * moved * around;
-    // If little of the area remains, the plane may be any through the corners' keys.
+    // If little of the area remains, the plane may be any plane through the corners' keys.
     if (lost > 0.5 * area) return range;
     return std::min(range, (std::abs(x) + std::abs(y)) * moved / (area - lost));
   }
-  /// Greatest effect of roundings between the corners (view/triangle_keys.h): at most sixteen roundings, and none if
-  /// keys are equal.
+  /// Greatest effect of rounding on keys between the corners (view/triangle_keys.h): at most sixteen roundings, and
+  /// none if all corners have the same key.
   [[nodiscard]] double of_rounding(double nearest) const {
     if (range == 0) return 0;
     // No side is longer along x or y than half of the perimeter.
@@ -200,7 +201,7 @@ std::vector<ScreenFace> screen_faces(const Surfaces& surfaces, const View& view,
 namespace {
 
 constexpr double kNoArea = 1e-12;    // square pixels: area that rounding may give to a line
-constexpr double kSampleRim = 1e-6;  // pixels: a sample on a side belongs to both areas beside it
+constexpr double kSampleRim = 1e-6;  // pixels: a sample on a common side belongs to both areas
 constexpr double kMostAsked = 4096, kLeastAsked = 64, kAskedOfAll = 1 << 28;
 
 /// A function that is not negative on the inner side of the line from one point to the next.
@@ -213,7 +214,7 @@ std::array<glm::dvec2, 3> corners_of(const ScreenFace& face) {
   return {face.corner(0), face.corner(1), face.corner(2)};
 }
 
-/// Not negative where `nearer` is not surely shown: constant + relative * nearer - (nearer - other).
+/// A function that is not negative where `nearer` is not surely shown: constant + relative * nearer - (nearer - other).
 AffineOverScreen is_not_shown(const KeyOverScreen& nearer, const KeyOverScreen& other, const KeyStep& step,
                               double slack) {
   const double share = step.relative - 1;
@@ -264,7 +265,7 @@ RowSpan span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, i
     if (slope < 0) high = std::min(high, -rest / slope - sample.x + kSampleRim);
     if (slope == 0 && rest < -kSampleRim * std::abs(f.gradient.y)) return {0, 0};
   }
-  // Bounds far beside the row would not fit an int.
+  // Bounds far outside of the row would not fit into an int.
   low = std::min(low, double(width));
   high = std::max(high, -1.0);
   const int first = std::max(int(std::ceil(low)), 0), end = std::min(int(std::floor(high)) + 1, width);
@@ -328,7 +329,7 @@ double VisibleShares::of(const ConvexArea& area, const RiskKeys& keys) {
     });
     looks_ += all;
   };
-  // Some samples suffice for the share. To tell whether anything is seen, all samples are needed.
+  // Some samples suffice to estimate the share. To tell whether anything is seen at all, all samples are needed.
   const int step = int(std::sqrt(area.area() * view.samples / asked_));
   if (step > 1) look(step);
   if (seen == 0) look(1);

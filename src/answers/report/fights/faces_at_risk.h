@@ -6,8 +6,8 @@
 //               `-`      and by the roundings of keys. Two faces whose keys differ by more than the sum of both
 //                        errors, and a step of the format, are shown in the right order.
 //
-// Keys are affine over the screen; so are the difference of two keys, and the difference that format and rounding need
-// to tell them apart. The difference is too small in a strip between two straight lines:
+// Keys are affine over the screen. The difference of two keys is affine, too, and so is the least difference with which
+// format and rounding keep them apart. Keys differ by less in a strip between two straight lines:
 //
 //      \  first is surely shown  \//////\  second is surely shown
 //       \    where it is nearer   \/////\\    where it is nearer
@@ -27,7 +27,7 @@
 
 namespace frontmost {
 
-/// The difference that two keys need to be stored as different values, in their order: constant + relative * key.
+/// The least difference with which two keys are stored as different values in their order: constant + relative * key.
 struct KeyStep {
   double constant = 0, relative = 0;
 
@@ -55,10 +55,10 @@ struct ScreenFace {
 /// The farthest key seen at the samples of each square block of pixels.
 class FarthestSeen {
  public:
-  /// A value with which nothing is hidden.
+  /// The default value hides nothing.
   FarthestSeen() = default;
   explicit FarthestSeen(const Visible& visible);
-  /// Whether a key of `high` is behind everything seen in these pixels and the adjacent ones.
+  /// Whether a surface with the key `high` is behind everything seen in these pixels and the adjacent ones.
   [[nodiscard]] bool hides(const zbuffer_detail::PixelRect& rect, float high) const;
 
  private:
@@ -78,7 +78,8 @@ struct AffineOverScreen {
   [[nodiscard]] double at(const glm::dvec2& point) const { return constant + glm::dot(gradient, point); }
 };
 
-/// Corners are ordered as in a face on the screen: the inside is on the left of each side, with y upwards.
+/// A convex polygon. Its corners are ordered as in a face on the screen: the inside is on the left of each side, with y
+/// upwards.
 class ConvexArea {
  public:
   ConvexArea() = default;
@@ -100,12 +101,12 @@ struct RowSpan {
   int first, end;
 };
 
-/// The pixels of a row of samples at `sample.y` that lie in an area, sides included. Samples are `sample.x` to the
-/// right of the left sides of their pixels.
+/// The pixels of a row whose samples lie in an area, sides included. The samples have the height `sample.y`, and each
+/// lies `sample.x` to the right of the left side of its pixel.
 [[nodiscard]] RowSpan span_of(std::span<const glm::dvec2> corners, const glm::dvec2& sample, int width);
 
-/// Calls visit(number, x, y, offset) for the samples of a view in an area, in every `step`-th column and row. Numbers
-/// are in the order of Visible; offsets are relative to the corners of pixels.
+/// Calls visit(number, x, y, offset) for the samples of a view in an area, in every `step`-th column and row. Sample
+/// numbers are those of Visible; offsets are relative to the top left corners of pixels.
 template <class Visit>
 void visit_samples(std::span<const glm::dvec2> corners, const View& view, int step, const Visit& visit) {
   const auto from = [&](int first) { return (first + step - 1) / step * step; };
@@ -128,11 +129,11 @@ class RiskFinder {
  public:
   RiskFinder(const View& view, const DepthSetup& setup);
 
-  /// The area where both faces are and neither is surely shown; may be empty. Valid until the next call.
+  /// The area that both faces cover and in which neither is surely shown; may be empty. Valid until the next call.
   [[nodiscard]] const ConvexArea& of_pair(const ScreenFace& a, const ScreenFace& b);
-  /// The area where a face may be stored as the clear value.
+  /// The area in which a face may be stored as the clear value.
   [[nodiscard]] const ConvexArea& of_clear_value(const ScreenFace& face);
-  /// False if that area is certainly empty.
+  /// False if the area of of_clear_value() is certainly empty.
   [[nodiscard]] bool may_be_clear_value(const ScreenFace& face) const { return double(face.low) <= farthest_key_; }
 
  private:
@@ -147,21 +148,21 @@ class RiskFinder {
 /// The keys of two faces that are at risk, or of one face alone.
 struct RiskKeys {
   KeyOverScreen first, second;
-  double reach;  ///< the seen surface may be nearer by this much while they are still at risk
+  double reach;  ///< the faces may be shown although another surface is nearer by up to this
 
   RiskKeys(const ScreenFace& a, const ScreenFace& b, const KeyStep& step);
   [[nodiscard]] double nearest_at(const glm::dvec2& point) const { return std::max(first.at(point), second.at(point)); }
 };
 
-/// Estimates from samples the visible share of one area after another. For one thread.
+/// Estimates, from samples, the visible share of one area after another. For one thread.
 class VisibleShares {
  public:
-  /// `areas` is the number of areas. About 4,096 samples of each are examined, or fewer (at least 64) if all areas
+  /// `areas` is the number of areas. About 4,096 samples of each area are examined, or fewer (at least 64) if the areas
   /// together would take more than 2^28.
   VisibleShares(const Visible& visible, std::size_t areas);
 
-  /// The visible share, by the samples in the area, or, if there are none, by those of the pixel at its centre. 0 only
-  /// if no sample is seen, which takes all samples of the area.
+  /// The visible share of an area, estimated from the samples in the area, or, if it has none, from those of the pixel
+  /// at its centre. The share is 0 only if all samples of the area were examined and none is seen.
   [[nodiscard]] double of(const ConvexArea& area, const RiskKeys& keys);
   /// Number of samples examined since the last call.
   [[nodiscard]] std::uint64_t take_looks() { return std::exchange(looks_, 0); }

@@ -3,8 +3,8 @@
 //
 //   screen_faces -> pairs of faces -> RiskFinder -> areas by faces -> unions by objects
 //
-// Pairs overlap on the screen and come close to each other in depth. They are found cell by cell of the screen. Tests
-// for overlap are exact: corners are integers, so faces that share a side never overlap by rounding.
+// The faces of a pair overlap on the screen and come close to each other in depth. Pairs are found cell by cell of the
+// screen. Tests for overlap are exact: corners are integers, so faces that share a side never overlap by rounding.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -31,17 +31,17 @@ constexpr const char* kPlace = "fighting faces";
 struct FacePair {
   std::uint32_t first, second;
 
-  /// Both numbers as one, by which pairs are ordered.
+  /// Both numbers as one number, by which pairs are ordered.
   [[nodiscard]] std::uint64_t number() const { return std::uint64_t(first) << 32 | second; }
   friend bool operator<(const FacePair& a, const FacePair& b) { return a.number() < b.number(); }
 };
 
-/// Limits of the pairs examined and kept, by all threads together.
+/// Limits of the pairs that are examined and of the pairs that are kept, by all threads together.
 struct PairLimits {
   WorkLimit looks, pairs;
 };
 
-/// The bounds of a face in a cell, examined first.
+/// The bounds of a face in a cell, which are tested first.
 struct CellFace {
   std::int32_t x0, x1, y0, y1;
   float low, high;
@@ -54,13 +54,13 @@ struct CellFace {
   }
 };
 
-/// The faces of one cell, and the indices of those near one of them. Reused from cell to cell.
+/// The faces of one cell, and the indices of the faces near one of them. Reused from cell to cell.
 struct CellScratch {
   std::vector<CellFace> entries;
   std::vector<std::uint32_t> near;
 };
 
-/// Whether all of `b` lies on the outer side of a side of `a`, or on that side.
+/// Whether a side of `a` separates the triangles: all of `b` lies on its outer side, or on the side itself.
 bool is_parted_by_side(const TriangleRecord& a, const TriangleRecord& b) {
   for (int k = 0; k < 3; ++k) {
     const int n = k == 2 ? 0 : k + 1;
@@ -95,7 +95,7 @@ class FaceCells {
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
 
-  /// The text of an error, which names the cell with the most faces.
+  /// The text of the error, which names the cell that has the most faces.
   [[nodiscard]] std::string too_many(const std::string& things) const {
     const std::size_t columns = std::size_t(columns_);
     std::size_t fullest = 0;
@@ -147,19 +147,20 @@ class FaceCells {
   struct NearFaces {
     std::size_t looks, count;
   };
-  /// Writes the indices of the entries after the i-th whose rectangles and key ranges overlap its own.
+  /// Collects the entries after the i-th whose rectangles and key ranges overlap those of the i-th, and writes their
+  /// indices.
   static NearFaces collect_near(std::size_t i, const std::vector<CellFace>& entries, std::uint32_t* near) {
     const CellFace a = entries[i];
     std::size_t k = i + 1, count = 0;
     for (; k < entries.size() && entries[k].x0 < a.x1; ++k) {
       const CellFace& b = entries[k];
       near[count] = std::uint32_t(k);
-      // Without branches, which could not be predicted.
+      // No branches here, because they could not be predicted.
       count += std::size_t(int(b.y0 < a.y1) & int(a.y0 < b.y1) & int(b.low <= a.high) & int(a.low <= b.high));
     }
     return {k - i, count};
   }
-  /// Divides the screen into squares of 2^shift steps of 1/256 pixel.
+  /// Divides the screen into squares with a side length of 2^shift / 256 pixels.
   void divide_screen(int shift) {
     const int side = 1 << shift;
     shift_ = shift;
@@ -190,8 +191,8 @@ class FaceCells {
   TileLists lists_;
 };
 
-/// Finds all pairs of faces of different primitives that have an area in common and keys within reach of each other; in
-/// order.
+/// Finds all pairs of faces of different primitives that have a common area and overlapping ranges of keys. The pairs
+/// are in order.
 std::vector<FacePair> find_face_pairs(const std::vector<ScreenFace>& faces, const View& view,
                                       const Execution& execution) {
   const FaceCells cells(faces, view);
@@ -220,7 +221,7 @@ FightKind kind_of(const Surfaces& surfaces, PrimitiveId first, PrimitiveId secon
   return share_corner(a, b) ? FightKind::fold : FightKind::close;
 }
 
-/// Areas in the order in which they were found.
+/// The areas in the order in which they were found.
 struct FoundAreas {
   std::vector<FightingFaces> faces;
   std::vector<glm::dvec2> corners;
@@ -234,7 +235,8 @@ struct FightSearch {
   const std::vector<ScreenFace>& faces;
   const KeyStep step{setup};
 
-  /// Appends the area of two faces; with the same face twice, the area of the clear value.
+  /// Appends the area of two faces; if the two faces are the same, the area in which it may be stored as the clear
+  /// value.
   void find(RiskFinder& finder, VisibleShares& shares, const FacePair& pair, FoundAreas& found) const {
     const ScreenFace &a = faces[pair.first], &b = faces[pair.second];
     const bool is_alone = pair.first == pair.second;
@@ -310,7 +312,7 @@ struct VerticalReach {
   }
 };
 
-/// Appends the chords of an area with the lines at (n + 0.5) * spacing.
+/// Appends the chords that the lines at y = (n + 0.5) * spacing have in common with an area.
 void append_chords(std::span<const glm::dvec2> corners, double spacing, std::vector<Chord>& chords) {
   const VerticalReach height(corners);
   auto line = std::int64_t(std::ceil(height.top / spacing - 0.5));
@@ -328,9 +330,9 @@ void append_chords(std::span<const glm::dvec2> corners, double spacing, std::vec
   }
 }
 
-/// The area of the union divided by the sum of the areas: 1 if none overlap, at least 1 over their number. The union is
-/// measured along lines 1/16 pixel apart, or farther apart if there would be too many. Parts of a line in several areas
-/// count once.
+/// The area of the union divided by the sum of the areas: 1 if no areas overlap, and at least 1 divided by their
+/// number. The union is measured along lines 1/16 pixel apart, or farther apart if there would be too many lines. A
+/// part of a line that lies in several areas counts once.
 ///
 ///     +-------+
 ///     |-------|-----

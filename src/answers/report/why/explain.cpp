@@ -40,7 +40,7 @@ struct SampleProbe {
 
 constexpr std::uint64_t kProbesOfObject = 4;
 
-/// Adds samples of a mask, at even steps from the first marked one to the last.
+/// Adds samples of a mask, at even steps between the first marked sample and the last.
 void choose_marked(const ObjectMask& mask, std::uint32_t object, std::vector<SampleProbe>& probes) {
   const PixelRect& rect = mask.touched();
   const auto visit_words = [&](const auto& visit) {
@@ -65,7 +65,7 @@ void choose_marked(const ObjectMask& mask, std::uint32_t object, std::vector<Sam
   });
 }
 
-/// The probes, by squares of pixels.
+/// The probes, in squares of pixels.
 class ProbeGrid {
  public:
   ProbeGrid(const std::vector<SampleProbe>& probes, const View& view)
@@ -109,7 +109,7 @@ struct ProbedView {
   const std::vector<SampleProbe>& probes;
   const ProbeGrid grid;
 
-  /// Adds the probes that a triangle of an object covers to `hits`.
+  /// Adds a hit to `hits` for every probe that a triangle of an object covers.
   void add_hits(const TriangleRecord& record, std::uint32_t object, std::vector<ProbeHit>& hits) const {
     const View& view = canvas.view;
     grid.visit(pixel_rect(record, view.width, view.height), [&](std::uint32_t number) {
@@ -143,7 +143,7 @@ std::vector<SampleProbe> choose_probes(const PlacedScene& scene, const ObjectCan
   return probes;
 }
 
-/// The objects in front of each probe's own object, ascending, by probe.
+/// By probe: the objects in front of the probe's own object, ascending.
 std::vector<std::vector<std::uint32_t>> find_before(const PlacedScene& scene, const ObjectCanvas& canvas,
                                                     const std::vector<SampleProbe>& probes,
                                                     const Execution& execution) {
@@ -174,7 +174,7 @@ std::vector<std::vector<std::uint32_t>> find_before(const PlacedScene& scene, co
   return before;
 }
 
-/// The last reason of any of the object's triangles.
+/// The reason that comes last in SightReason among those of the object's triangles.
 SightReason reason_of(const TrianglePlaces& triangles) {
   if (triangles.in_view > 0) return SightReason::no_sample;
   if (triangles.faces_away > 0) return SightReason::faces_away;

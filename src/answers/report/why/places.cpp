@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each triangle is counted at one place: behind the eye, before near, beyond far, beside the picture, turned away, or
-// in view. Boxes that surely lie in view are counted without looking at each of their triangles.
+// Each triangle is counted at one place: behind the eye, nearer than near, beyond far, outside the picture, turned
+// away, or in view. Boxes that surely lie in view are counted without looking at each of their triangles.
 #include "report/why/places.h"
 
 #include <array>
@@ -17,7 +17,7 @@ namespace {
 /// The planes of the viewing volume, used as bits. The sides come before near and far.
 enum Plane : std::uint8_t { kLeft, kRight, kAbove, kBelow, kNear, kFar, kPlaneCount };
 
-/// Distances from the planes, positive inside, linear over space.
+/// Distances from the planes: positive inside, and linear over space.
 using PlaneDistances = std::array<double, kPlaneCount>;
 
 struct FrustumPoint {
@@ -25,7 +25,7 @@ struct FrustumPoint {
   PlaneDistances inside;
 };
 
-/// A convex polygon, at most a triangle cut by six planes.
+/// A convex polygon: a triangle that was cut by up to six planes.
 struct FrustumPolygon {
   std::array<FrustumPoint, 3 + kPlaneCount> corners;
   std::size_t count = 0;
@@ -80,7 +80,8 @@ class Frustum {
   /// Whether a box surely lies inside all planes.
   [[nodiscard]] bool surely_holds(const Box& box) const {
     if (box.is_empty()) return true;
-    // Distances are linear, so the corners decide. The rounding of see() is far less than this share of its summands.
+    // Distances are linear, so the corners decide. The rounding of see() is far less than this share of the numbers
+    // that it adds.
     constexpr double kRounding = 1e-12;
     for (int k = 0; k < 8; ++k) {
       const glm::vec3 corner(k & 1 ? box.high.x : box.low.x, k & 2 ? box.high.y : box.low.y,
@@ -103,8 +104,8 @@ class Frustum {
     return {(p.x / unit - projection_.left) * pixels_across_, (projection_.top - p.y / unit) * pixels_down_};
   }
 
-  /// Winding of a triangle on the screen, even if parts lie behind the eye: positive if its front is seen, 0 if it is
-  /// edge-on.
+  /// Winding of a triangle on the screen: positive if its front is seen, 0 if it is edge-on. Parts may lie behind the
+  /// eye.
   [[nodiscard]] double facing(const PointAhead& a, const PointAhead& b, const PointAhead& c) const {
     if (projection_.orthographic) return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
     return glm::dot(a, glm::cross(b, c));
@@ -116,7 +117,7 @@ class Frustum {
   double pixels_across_, pixels_down_;  ///< pixels per unit of the projection's rectangle
 };
 
-/// Number of triangles with area 0 or a non-finite corner.
+/// Number of triangles that have no area or a non-finite corner.
 std::uint64_t count_flat(const WorldTriangles& triangles) {
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < triangles.corners.size(); ++i) {
@@ -128,7 +129,7 @@ std::uint64_t count_flat(const WorldTriangles& triangles) {
   return count;
 }
 
-/// By material, the default material last: 1 if no place of it is opaque.
+/// By material, the default material last: 1 if the material has no opaque place.
 std::vector<std::uint8_t> find_clear_materials(const Scene& scene) {
   std::vector<std::uint8_t> clear(scene.materials.size() + 1, 0);
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
@@ -142,7 +143,7 @@ std::vector<std::uint8_t> find_clear_materials(const Scene& scene) {
   return clear;
 }
 
-/// The radius of a circle that surely fits into a convex polygon: area / perimeter; in a triangle twice that.
+/// The radius of a circle that surely fits into a convex polygon: area / perimeter, and twice that for a triangle.
 double inner_radius(std::span<const glm::dvec2> p) {
   double doubled = 0, perimeter = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -158,7 +159,7 @@ double inner_radius(std::span<const glm::dvec2> p) {
 struct FrustumScratch {
   WorldScratch world;
   std::vector<FrustumPoint> seen;     // by vertex, set when the vertex is first used
-  std::vector<std::uint8_t> outside;  // by vertex, a bit for each plane, and more
+  std::vector<std::uint8_t> outside;  // by vertex: a bit for each plane, and further bits
 };
 
 /// Finds the places of one range of triangles.
@@ -173,7 +174,7 @@ class PlaceFinder {
     is_any_clear_ = std::find(clear_.begin(), clear_.end(), 1) != clear_.end();
   }
 
-  /// `needs_area`: whether the triangles' positions on the screen matter.
+  /// `needs_area`: whether the positions of the triangles on the screen are needed.
   [[nodiscard]] ObjectPlaces find(const MeshRange& range, bool needs_area, FrustumScratch& scratch) const {
     ObjectPlaces places;
     const WorldTriangles world = world_triangles(scene_, range, isa_, scratch.world);
@@ -199,14 +200,14 @@ class PlaceFinder {
   }
 
  private:
-  // Further bits beside those of the planes.
+  // Further bits, after those of the planes.
   static constexpr std::uint8_t kBehindEye = 1 << kPlaneCount, kNowhere = 1 << (kPlaneCount + 1);
-  static constexpr std::uint8_t kNotSeen = 0xFF;  // no vertex has this value: kNowhere excludes other bits
+  static constexpr std::uint8_t kNotSeen = 0xFF;  // no vertex has this value, because kNowhere excludes all other bits
 
   struct ViewedTriangle {
     const FrustumPoint* corners[3];
     glm::dvec3 normal;                      ///< its length is twice the area
-    std::uint8_t any_outside, all_outside;  ///< planes that any corner is outside of, or all corners
+    std::uint8_t any_outside, all_outside;  ///< planes outside of which any corner, or every corner, lies
     PrimitiveId id;
 
     [[nodiscard]] const PointAhead& at(int k) const { return corners[k]->at; }
@@ -218,7 +219,7 @@ class PlaceFinder {
     return facing_.culling() == Culling::none && !is_any_clear_ && frustum_.surely_holds(box);
   }
 
-  /// \returns whether it is in view.
+  /// Finds the place of one triangle. \returns whether the triangle is in view.
   [[nodiscard]] bool find_triangle(const WorldTriangles& world, std::size_t i, bool needs_area, FrustumScratch& scratch,
                                    ObjectPlaces& places) const {
     glm::uvec3 c = world.corners[i] - world.first_position;
@@ -261,7 +262,7 @@ class PlaceFinder {
     return !(facing > 0 && facing_.keeps(t.id, true)) && !(facing < 0 && facing_.keeps(t.id, false));
   }
 
-  /// \returns whether it is in view.
+  /// Finds the place of a triangle that has an area. \returns whether the triangle is in view.
   [[nodiscard]] bool place(const ViewedTriangle& t, bool needs_area, ObjectPlaces& places) const {
     TrianglePlaces& counts = places.counts;
     if ((t.all_outside & kBehindEye) != 0) {
@@ -298,8 +299,8 @@ class PlaceFinder {
     return true;
   }
 
-  /// Clips the polygon by the viewing volume. \returns the count of the side on which all of it lies; null if a part is
-  /// in view. A polygon outside on one side is only clipped by near and far.
+  /// Clips the polygon by the viewing volume. \returns the count of the side on which all of the polygon lies; null if
+  /// a part is in view. A polygon that lies outside on one side is clipped only by near and far.
   [[nodiscard]] static std::uint64_t* side_of(FrustumPolygon& polygon, std::uint8_t any_outside,
                                               TrianglePlaces& counts) {
     const auto is_crossing = [&](Plane plane) { return (any_outside >> plane & 1) != 0; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Positions of the triangles of every object relative to the viewing volume, and remedies: changes of a view, in round
+// Positions of the triangles of every object relative to the viewing volume; and remedies, which change a view by round
 // numbers.
 #pragma once
 
@@ -53,8 +53,8 @@ struct ObjectPlaces {
   void add(const ObjectPlaces& other);
 };
 
-/// Finds the places of every object, or only of `object` if it is not no_index; the others stay zero. `columns`, `rows`
-/// and `widest` are set only for objects that cover no sample. O(triangles), in parallel.
+/// Finds the places of every object, or only of `object` if that is not no_index; the counts of other objects stay
+/// zero. `columns`, `rows` and `widest` are set only for objects that cover no sample. O(triangles), in parallel.
 [[nodiscard]] std::vector<ObjectPlaces> find_places(const PlacedScene& scene, const View& view,
                                                     const Accounting& accounts, std::uint32_t object,
                                                     const Execution& execution);
@@ -65,8 +65,8 @@ class LoneObject {
  public:
   LoneObject(const Scene& scene, std::uint32_t object);
 
-  /// Whether the object would cover a sample of the picture, or of one with `factor` times the width and height.
-  /// Precondition: the enlarged view is valid. `places` holds the object's position in the picture.
+  /// Whether the object would cover a sample of the picture, or of a picture with `factor` times the width and height.
+  /// Precondition: the enlarged view is valid. `places` holds the object's position in the original picture.
   [[nodiscard]] bool has_sample(const View& view, const ObjectPlaces& places, int factor = 1) const;
   /// The object's area in the picture, in square pixels. `places` holds the object's position.
   [[nodiscard]] double area(const View& view, const ObjectPlaces& places) const;
@@ -76,10 +76,11 @@ class LoneObject {
   Surfaces surfaces_;
 };
 
-/// The remedy for an object that `reason`, one of those before no_sample, keeps from being seen; none if nothing helps.
+/// The remedy for an object that `reason`, one of the reasons before no_sample, keeps from being seen; none if nothing
+/// helps.
 [[nodiscard]] Remedy remedy_for(SightReason reason, const ObjectPlaces& places, const View& view);
-/// The remedy for an object that covers no sample: the first of some growing pictures in which it covers one. None if
-/// no picture of up to 16384 pixels each way suffices.
+/// The remedy for an object that covers no sample. Some growing pictures are tried; the first in which the object
+/// covers a sample is the remedy. None if no picture of up to 16384 pixels each way suffices.
 [[nodiscard]] Remedy enlargement_for(const LoneObject& lone, const ObjectPlaces& places, const View& view);
 
 }  // namespace frontmost::why_detail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Remedies stay right when their numbers are rounded. A near plane is rounded towards the eye and a far plane away from
-// it. Turns are rounded to a tenth of what the picture shows, so the object ends near its middle.
+// it. Turns are rounded to a tenth of the angle that the picture shows, so the object comes to lie near the middle.
 #include <algorithm>
 #include <cmath>
 
@@ -24,7 +24,7 @@ Scene scene_of_one(const Scene& scene, std::uint32_t object) {
   return lone;
 }
 
-/// The pixels that a range of positions touches, at least one, within the picture.
+/// The pixels within the picture that a range of positions touches; at least one.
 struct PixelStretch {
   int first, count;
 
@@ -43,7 +43,7 @@ accounting_detail::PixelRect touched_pixels(const View& enlarged, const ObjectPl
   return {columns.first, rows.first, columns.first + columns.count - 1, rows.first + rows.count - 1};
 }
 
-/// The part of a view with these pixels, at the same scale.
+/// The part of a view that consists of these pixels, at the same scale.
 View cropped(const View& view, const PixelStretch& columns, const PixelStretch& rows) {
   const Projection& whole = view.projection;
   const double across = (whole.right - whole.left) / view.width, down = (whole.top - whole.bottom) / view.height;
@@ -73,7 +73,7 @@ int decimal_exponent(double value) {
   return exponent;
 }
 
-/// `count` times ten to a power, rounded as if it were read from a decimal number.
+/// `count` times ten to the power of `exponent`, rounded as if it were read from a decimal number.
 double tens(double count, int exponent) {
   return exponent < 0 ? count / power_of_ten(-exponent) : count * power_of_ten(exponent);
 }
@@ -89,7 +89,7 @@ double round_to_two(double value, bool down) {
   return tens(whole, exponent);
 }
 
-/// The nearest multiple of a power of ten.
+/// The nearest multiple of ten to the power of `exponent`.
 double round_to_tens(double value, int exponent) { return tens(std::round(value / power_of_ten(exponent)), exponent); }
 
 double near_for(const ValueRange& nearer, const Projection& projection) {
@@ -108,7 +108,7 @@ class CameraAim {
         middle_((projection_.left + projection_.right) / 2, (projection_.bottom + projection_.top) / 2),
         size_(projection_.right - projection_.left, projection_.top - projection_.bottom) {}
 
-  /// A move along one axis, if that suffices; otherwise along both.
+  /// A move along one axis, if that suffices; otherwise a move along both.
   [[nodiscard]] Remedy move() const {
     const int step = decimal_exponent(std::min(size_.x, size_.y)) - 1;
     const auto offset = [&](int axis) {
@@ -132,7 +132,7 @@ class CameraAim {
   }
 
  private:
-  static constexpr double kInner = 0.4;  // share of the size on each side of the middle, surely within the picture
+  static constexpr double kInner = 0.4;  // share of the size on each side of the middle that is surely in the picture
 
   [[nodiscard]] double angle_right() const {
     const double across = std::hypot(target_.x, target_.z);
@@ -144,7 +144,7 @@ class CameraAim {
     return {target_.x * std::cos(angle) - target_.z * std::sin(angle), target_.y,
             target_.z * std::cos(angle) + target_.x * std::sin(angle)};
   }
-  /// The angle upwards after a turn to the right.
+  /// The angle upwards that remains after a turn to the right.
   [[nodiscard]] double angle_up(double right) const {
     const PointAhead p = turned_right(right);
     return std::atan2(p.y, p.z) - std::atan2(middle_.y, 1);
@@ -162,10 +162,10 @@ class CameraAim {
   glm::dvec2 middle_, size_;
 };
 
-/// A circle of this radius, in pixels, contains a sample wherever it lies, even if corners are snapped.
+/// Radius in pixels. A circle of this radius contains a sample wherever it lies, even if corners are snapped.
 constexpr double kSampledRadius = 0.72;
 
-/// Whether the examined part of the picture has few enough samples.
+/// Whether the part of the enlarged picture that the object may touch has few enough samples to be examined.
 bool is_small_enough(const ObjectPlaces& places, const View& view, int factor) {
   constexpr double kMostSamples = 1 << 22;
   const double across = (places.columns.high - places.columns.low) * factor + 3;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Explanations in words. Rounding keeps numbers true: only a whole share is written as 100 %, and only an empty one as
-// 0 %.
+// Explanations in words. Rounding keeps numbers true: 100 % is written only if the share is the whole, and 0 % only if
+// it is empty.
 
 #include <cmath>
 #include <unordered_map>
@@ -36,7 +36,7 @@ std::string other_objects(std::size_t count) {
   return std::to_string(count) + (count == 1 ? " other object" : " other objects");
 }
 
-/// The hiders with their shares. `whole`: the whole that shares refer to, as a multiple of the samples in frame.
+/// The hiders with their shares. `whole` is the whole to which shares refer, as a multiple of the samples in frame.
 std::string hiders_text(const std::vector<HiderShare>& hiders, double whole, const ObjectNames& names) {
   std::vector<std::string> parts;
   double rest = 0;
@@ -68,8 +68,8 @@ std::vector<TrianglePlace> places_of(const TrianglePlaces& t) {
   return places;
 }
 
-/// Counts by place, out of all triangles that have an area, such as "; of its 12 triangles 4 behind the eye and 8 on
-/// the left"; leaves out the place `but`. Empty if there are none.
+/// The counts by place, out of all triangles that have an area, such as "; of its 12 triangles 4 behind the eye and 8
+/// on the left". Leaves out the place `but`. Empty if no triangle is at another place.
 std::string mixture_text(const TrianglePlaces& triangles, std::string_view but = "") {
   std::vector<std::string> parts;
   for (const TrianglePlace& place : places_of(triangles))
@@ -85,7 +85,7 @@ std::string seen_text(const Explanation& why, const ObjectNames& names) {
   return text;
 }
 
-/// The directions of a turn, or of a move in scene units.
+/// The directions of a turn, or those of a move in scene units.
 std::string directions_text(const Remedy& remedy) {
   const auto part = [&](double amount, const char* positive, const char* negative) {
     const bool is_turn = remedy.kind == RemedyKind::turn;

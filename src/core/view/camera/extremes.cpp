@@ -63,7 +63,7 @@ Extremes::Extremes(const FilledFrustum& frustum)
   std::fill_n(reach_, direction_count, -kInfinity);
 }
 
-/// A point along the axes of the two planes.
+/// The coordinates of a point along the axes of the two planes.
 struct Extremes::Projected {
   double across[2], towards;
 };
@@ -76,7 +76,7 @@ double Extremes::reach(int direction, const Projected& point) const {
   const int plane = direction >= in_plane, k = direction - plane * in_plane;
   const double across = point.across[plane], towards = point.towards;
   if (k < around) return across * cosine_[k] + towards * sine_[k];
-  // Equal to the bit to the value that the fitting of a frustum computes for the point.
+  // This value equals, to the bit, the one that Fit (frame.cpp) computes for the point.
   return (k == around ? across : -across) / spread_[plane] + towards;
 }
 
@@ -88,7 +88,7 @@ void Extremes::include(const glm::vec3& point) {
 
 void Extremes::offer(int direction, double reach, const glm::vec3& point) {
   Kept& kept = kept_[direction];
-  // Points that reach equally far are kept by a fixed order, so that the result does not depend on who came first.
+  // Points that reach equally far are kept by a fixed order, so that the result does not depend on which came first.
   if (reach < reach_[direction]) return;
   if (kept.is_set && reach == reach_[direction] && !comes_before(point, kept.point)) return;
   reach_[direction] = reach;
@@ -193,7 +193,7 @@ class Extremes::Core {
     glm::dvec2 inverse_half{0};  ///< 0 if the polygon is flat, or nothing is kept yet
     /// By side and slope: points nearer to the middle than the inverse of this value, in units of `half`, are in the
     /// polygon. Along a side the value is the greatest of linear functions, one for each line, and so convex: between
-    /// two slopes it is at most the linear interpolation of theirs.
+    /// two slopes it is at most the linear interpolation of the values at these slopes.
     std::array<double, 4 * (slopes + 1)> inverse_radius;
 
     /// Cuts off everything farther than `distance` along `normal`, in units of `half`.
@@ -215,7 +215,7 @@ class Extremes::Core {
       const int slope = std::min(int(at), slopes - 1), side = (is_steep ? 2 : 0) + (major < 0 ? 1 : 0);
       const double* const inverse = inverse_radius.data() + side * (slopes + 1) + slope;
       const double between = inverse[0] + (inverse[1] - inverse[0]) * (at - slope);
-      return size * between < 1 - 1e-6;  // by far more than rounding; false if lines are at no distance
+      return size * between < 1 - 1e-6;  // the margin is far more than rounding; false for infinity
     }
   };
   Polygon polygons_[2];
@@ -286,14 +286,15 @@ class Extremes::Search {
   Extremes& extremes_;
   Core core_;
   std::vector<bool> is_done_;  ///< by part
-  int missed_at_most_ = 1024;  ///< so many full tests cost more than another core
-  int missed_ = 0;             ///< points outside the core since it was made
-  bool is_changed_ = false;    ///< whether a kept point has changed since then
+  int missed_at_most_ = 1024;  ///< this many full tests cost more than making another core
+  int missed_ = 0;             ///< points outside the core that changed nothing, since the core was made
+  bool is_changed_ = false;    ///< whether a kept point has changed since the core was made
 };
 
 namespace {
 
-/// Parts that are neighbours in the file. Left-out objects have empty boxes.
+/// Parts of a Search: the boxes of a placed scene, whose triangles are neighbours in the file. The boxes of left-out
+/// objects are empty.
 struct PlacedParts {
   const PlacedScene& placed;
   std::vector<bool> is_left_out;  ///< by box
@@ -312,7 +313,7 @@ struct PlacedParts {
   }
 };
 
-/// Parts that are neighbours in space.
+/// Parts of a Search: clusters, whose triangles are neighbours in space.
 struct ClusterParts {
   const ClusterSet& set;
 

@@ -2,8 +2,8 @@
 // The few points of a model that decide how a view frames it.
 //
 // A side of the frustum touches a model at the point that reaches farthest in the direction in which the side moves.
-// There are at most 132 such directions, so as many points stand for a million: frame() finds the same view for them as
-// for all points.
+// There are at most 132 such directions, so at most 132 points stand for a million: frame() finds the same view for
+// them as for all points.
 //
 //         . * .
 //      *  . . .  *       * kept: the farthest in some direction
@@ -32,20 +32,22 @@ struct FilledFrustum {
   FilledFrustum(const glm::dmat4& world_from_eye, const Projection& sides, double margin);
 };
 
-/// Keeps, of any number of points, those that lie farthest in some fixed directions: the directions in which the sides
-/// of a frustum move, exactly, and 64 around each of the two planes in which its sides can be drawn. The kept points
-/// depend on the set of points alone, not on their order. So a model in pieces is framed to the bit like the whole
-/// model.
+/// Keeps, of any number of points, those that lie farthest in some fixed directions: exactly the directions in which
+/// the sides of a frustum move, and 64 directions around each of the two planes in which two of the sides are lines.
+/// The kept points depend on the set of points alone, not on their order. So a model in pieces is framed to the bit
+/// like the whole model.
 class Extremes {
  public:
   explicit Extremes(const FilledFrustum& frustum);
 
   /// Precondition: the point is finite.
   void include(const glm::vec3& point);
-  /// All vertices of finite triangles, without some objects, whose numbers ascend. 1 to 3 ms for a million triangles:
-  /// boxes exclude most of them, and a polygon does if boxes do not help, as in files whose order is random.
+  /// Includes all vertices of finite triangles, except those of the objects `left_out`, whose numbers ascend. 1 to 3 ms
+  /// for a million triangles. Boxes exclude most triangles; if boxes do not help, as in files whose order is random, a
+  /// polygon does.
   void include(const PlacedScene& placed, std::span<const std::uint32_t> left_out = {});
-  /// All vertices of clusters. Sooner, as clusters are neighbours in space, whatever the order of the file.
+  /// Includes all vertices of clusters. This is faster, because the triangles of a cluster are neighbours in space,
+  /// whatever the order of the file.
   void include(const ClusterSet& set);
   /// False if no point within the box would be kept.
   [[nodiscard]] bool may_change_by(const Box& box) const;
@@ -54,7 +56,7 @@ class Extremes {
 
  private:
   static constexpr int around = 64;            ///< directions in each plane
-  static constexpr int in_plane = around + 2;  ///< and the directions of the two sides
+  static constexpr int in_plane = around + 2;  ///< `around`, and the directions of the two sides
   static constexpr int direction_count = 2 * in_plane;
   struct Extent;
   struct Projected;
@@ -63,7 +65,7 @@ class Extremes {
   class Search;
 
   [[nodiscard]] Projected projected(const glm::dvec3& point) const;
-  /// The reach of a point in a direction, in the one rounding that decides.
+  /// The reach of a point in a direction, with the one rounding that decides which point is kept.
   [[nodiscard]] double reach(int direction, const Projected& point) const;
   /// An upper bound of the reach of all points within a box.
   [[nodiscard]] double reach(int direction, const Extent& extent) const;

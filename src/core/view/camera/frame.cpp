@@ -17,12 +17,12 @@
 //   |subject|                    | ground |   | sky |
 //   0       r                    at least 8 r     reach ->
 //
-// Interest is the fourth root of the number of triangles: many plain objects outweigh one fine mesh, and a fine mesh a
-// few plain ones. With the number itself, a sphere around a village would be the subject.
+// Interest is the fourth root of the number of triangles: many plain objects outweigh one fine mesh, and one fine mesh
+// outweighs a few plain objects. If interest were the number itself, a sphere around a village would be the subject.
 //
 // An object with more than half of the interest holds the weighted median on each axis. So the middle lies among the
-// objects that matter, however far away the others are, and distance from the middle separates them. The size of all
-// objects together, or their mean, would mostly depend on how far the lost objects are.
+// objects that matter, however far away the others are, and the distance from the middle separates both groups. The
+// size of all objects together, or their mean, would mostly depend on how far away the lost objects are.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -45,7 +45,8 @@ struct Weighted {
   double place, weight;
 };
 
-/// The least place up to which at least half of the weight lies. Halves that cannot hold it are dropped: O(places).
+/// The weighted median: the least place up to which at least half of the weight lies. Halves that cannot contain it are
+/// dropped, so it takes O(places).
 double median(std::vector<Weighted> places) {
   double half = 0, below = 0;
   for (const Weighted& one : places) half += one.weight / 2;
@@ -85,13 +86,13 @@ double reach_of(const Box& box, const glm::dvec3& middle) {
   return glm::length(glm::max(glm::abs(glm::dvec3(box.low) - middle), glm::abs(glm::dvec3(box.high) - middle)));
 }
 
-/// Objects that reach within a factor of two.
+/// The objects whose reach lies between two consecutive powers of two.
 struct Octave {
   double nearest = std::numeric_limits<double>::infinity(), farthest = 0, interest = 0;
 };
 
-/// Octaves by the exponents of all possible distances of floats, in order. A gap lies between octaves, so nothing needs
-/// to be sorted.
+/// Octaves for all distances that floats can have, in order. A gap always lies between two octaves, so objects need not
+/// be sorted.
 class Octaves {
  public:
   void include(double reach, double interest) {
@@ -147,7 +148,7 @@ Subject find_subject(const Surfaces& surfaces) {
 
 namespace {
 
-/// The model's own axes: up as its format defines it; a `front` view looks at front.
+/// The model's own axes. `up` is as the format defines it; NamedView::front looks at the side `front`.
 struct ModelAxes {
   glm::dvec3 right, up, front;  ///< right-handed; front points from the model to the viewer
 };
@@ -190,9 +191,9 @@ std::array<glm::dvec3, 8> corners_of(const Box& box) {
 Box unit_box() { return {glm::vec3(-0.5f), glm::vec3(0.5f)}; }
 
 /// A frustum moved so that it just holds all included points. With p = (x, y, towards) along its axes, a point is left
-/// of the right side if x <= spread * (eye_towards - towards) + eye_x. So each side requires one sum of eye coordinates
-/// to be at least the greatest of the points'. Two opposite sides give the eye's place across and how far back it must
-/// stand; only the latter, if a target in the middle of the picture gives the place across.
+/// of the right side if x <= spread * (eye_towards - towards) + eye_x. So each side requires one sum of the eye's
+/// coordinates to be at least the greatest such sum of the points. Two opposite sides give the eye's place across and
+/// how far back it must stand; only the latter, if a target in the middle of the picture gives the place across.
 class Fit {
  public:
   Fit(const FilledFrustum& frustum, const std::optional<glm::dvec3>& target)
@@ -226,8 +227,8 @@ class Fit {
   static constexpr double kInfinity = std::numeric_limits<double>::infinity();
   struct Direction {
     double spread;
-    std::optional<double> centre = std::nullopt;   // of the picture, if it is given
-    double plus = -kInfinity, minus = -kInfinity;  // of +-x / spread + towards
+    std::optional<double> centre = std::nullopt;   // centre of the picture, if there is a target
+    double plus = -kInfinity, minus = -kInfinity;  // greatest values of +-x / spread + towards
     double low = kInfinity, high = -kInfinity;
 
     void include(double x, double towards) {
@@ -294,7 +295,7 @@ class Spread {
 /// Moves the eye across until the model is in the middle of the picture. Only the looser direction moves, as the tight
 /// one is in the middle already.
 void centre(glm::dmat4& pose, const FilledFrustum& frustum, const std::vector<glm::vec3>& points) {
-  constexpr int kSteps = 3;  // each step leaves a small part: the change of the extremes' distances
+  constexpr int kSteps = 3;  // each step leaves a small error, because the distances of the extremes change
   for (int step = 0; step < kSteps; ++step)
     for (int axis = 0; axis < 2; ++axis) {
       Spread spread(glm::dvec3(pose[3]), glm::dvec3(frustum.axes[axis]), glm::dvec3(frustum.axes[2]));
@@ -319,8 +320,8 @@ Subject subject_for(const Surfaces& surfaces, FramedObjects objects) {
   return subject;
 }
 
-/// Clip planes around everything. But left-out objects must not push the near plane into the subject, nor hide the
-/// subject from behind the eye of a parallel projection.
+/// Clip planes around everything. But left-out objects must not push the near plane into the subject. In parallel
+/// projection, left-out objects behind the eye must not hide the subject.
 ClipDistances clip_around(const Surfaces& surfaces, const Subject& subject, const glm::dmat4& pose, bool orthographic) {
   ClipDistances clip = fit_clip(surfaces.bounds(), pose, orthographic);
   if (subject.left_out.empty()) return clip;
@@ -358,8 +359,8 @@ ClipDistances fit_clip(const Box& bounds, const glm::dmat4& world_from_eye, bool
   ClipDistances clip{nearest - spare, farthest + spare};
   if (orthographic) return clip;
   if (!(clip.far > 0)) clip.far = std::max(size, 1e-30);  // all behind the eye: any valid planes will do
-  // An eye within the model would give a near plane at 0, and keys (near / distance) that are all 0. Four digits of
-  // range cost floats nothing: keys near 0 are as finely spaced.
+  // An eye within the model would give a near plane at 0, and keys (near / distance) that are all 0. A range of four
+  // digits costs floats no precision, because keys near 0 are as finely spaced relative to their size.
   clip.near = std::max(clip.near, 1e-4 * clip.far);
   if (!(clip.near < clip.far)) clip.near = 0.5 * clip.far;
   return clip;
@@ -386,10 +387,11 @@ View frame(const Surfaces& surfaces, int width, int height, const FrameOptions& 
   // The distance to a single point far from the origin must exceed rounding.
   const double diagonal = std::max({glm::length(high - low), 1e-5 * glm::length(high), 1e-30});
   if (options.orthographic) {
-    // Among left-out objects, the eye stands about as far before the subject as an eye in perspective.
+    // If objects are left out, the eye stands about as far before the subject as an eye in perspective.
     pose[3] = glm::dvec4(fit.parallel_eye(box, (subject.left_out.empty() ? 1 : 2) * diagonal), 1.0);
   } else {
-    // The eye keeps a distance from the nearest point, as it would lie in a model that is seen along its own plane.
+    // The eye keeps a distance from the nearest point, because otherwise it would lie in a flat model that is seen
+    // edge-on.
     pose[3] = glm::dvec4(fit.eye(1e-3 * diagonal), 1.0);
     if (!points.empty() && !options.target) centre(pose, frustum, points);
   }

@@ -33,7 +33,7 @@ const glm::dmat4 kFlipYZ(1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1);
 // Eye space from a robot's axes: x is ahead (-z of the eye), y left (-x), z up (y).
 const glm::dmat4 kEyeFromRobot(0, 0, -1, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1);
 
-/// The transpose inverts a rotation exactly; a general inverse would round once more.
+/// Inverts a rigid pose. The transpose inverts a rotation exactly; a general inverse would round once more.
 glm::dmat4 inverse_rigid(const glm::dmat4& pose) {
   const glm::dmat3 rotation = glm::transpose(glm::dmat3(pose));
   glm::dmat4 inverse(rotation);
@@ -79,7 +79,7 @@ glm::dmat4 look_at(const glm::dvec3& eye, const glm::dvec3& target, const glm::d
   const glm::dvec3 wanted = is_finite(up) && up_length > 0 ? up / up_length : glm::dvec3(0, 1, 0);
   glm::dvec3 right = glm::cross(wanted, back);
   // The roll is undefined along "up", so the axis farthest from the viewing direction replaces "up". The limit is the
-  // sine of the angle between both: below it the roll would consist of rounding errors.
+  // sine of the angle between "up" and the viewing direction: below it the roll would consist of rounding errors.
   if (glm::length(right) < 1e-9) {
     const glm::dvec3 other = std::abs(back.z) < 0.9 ? glm::dvec3(0, 0, back.y > 0 ? -1 : 1) : glm::dvec3(0, 1, 0);
     right = glm::cross(other, back);
@@ -254,7 +254,7 @@ double distance_of_depth(const Projection& projection, const DepthConvention& de
   const DepthRow row = depth_row(projection, depth);
   if (projection.orthographic) return (ndc_depth - row.b) / row.a;
   const double denominator = ndc_depth + row.a;
-  // The depth is infinitely far: the far plane's own depth if the far plane is infinite, else a depth beyond it.
+  // The distance is infinite: the depth is that of an infinite far plane, or one beyond a finite far plane.
   if (denominator == 0) return std::numeric_limits<double>::infinity();
   return row.b / denominator;
 }
@@ -290,8 +290,8 @@ constexpr std::array<glm::ivec2, count> in_fixed_point(const std::array<glm::ive
   return offsets;
 }
 
-/// A value that is too large is a limit of the library, a value that is too small an error of the caller; messages name
-/// both ends.
+/// A value that is too large exceeds a limit of the library, and one that is too small is an error of the caller.
+/// Messages name both ends of the range.
 void check_range(double value, double low, double high, const char* what) {
   if (!(value >= low && value <= high))
     throw Error(value > high ? ErrorCode::limit_exceeded : ErrorCode::bad_argument, std::string(what),
@@ -350,8 +350,8 @@ void validate(const View& view) {
   if (p.orthographic) {
     (void)make_orthographic(p.left, p.right, p.bottom, p.top, p.clip);
   } else {
-    // make_frustum() takes sides at the near plane. These sides, at distance 1, are passed unscaled: scaled by a wrong
-    // near plane, they would be blamed for it.
+    // make_frustum() takes sides at the near plane. These sides, at distance 1, are passed unscaled: if they were
+    // scaled by a wrong near plane, the error would name the sides.
     (void)make_frustum(p.left, p.right, p.bottom, p.top, p.clip);
   }
   (void)world_from_eye(view.world_from_eye, PoseConvention::opengl_camera_to_world);

@@ -26,8 +26,8 @@
 namespace frontmost {
 
 /// A close upper bound of the number of triangles that tessellate() would make for the curved meshes, without making
-/// any. May exceed its limit, and be infinite. O(size of the scene). \throws Error as tessellate() does, except for the
-/// limit.
+/// any. The number may exceed the limit of tessellate(), and may be infinite. O(size of the scene). \throws Error as
+/// tessellate() does, except for the limit.
 [[nodiscard]] double tessellated_count(const Scene& scene, const View& view, double pixels);
 
 /// Steps of a grid over a patch.
@@ -48,14 +48,15 @@ struct MeshLevel {
   [[nodiscard]] double triangle_count() const;
 };
 
-/// The displacement of a point that a view tolerates: in world units, by distance along the viewing axis.
+/// The displacement of a point that a view tolerates, in world units. It depends on the point's distance along the
+/// viewing axis.
 class ScreenTolerance {
  public:
   /// Precondition: the view is valid, and pixels > 0.
   ScreenTolerance(const View& view, double pixels);
 
-  /// The greatest displacement that moves no point of the hull of `points` (world space) by more than the tolerance.
-  /// Infinity if all points lie before the near plane.
+  /// The greatest displacement that moves no point of the hull of `points` (world space) farther on the screen than the
+  /// tolerance. Infinity if all points lie before the near plane.
   [[nodiscard]] double of(std::span<const glm::dvec3> points) const;
   [[nodiscard]] double of_ball(const glm::dvec3& centre, double radius) const;
 
@@ -80,16 +81,17 @@ class PatchBending {
   double uu_ = 0, uv_ = 0, vv_ = 0;
 };
 
-/// The greatest distance between the unit sphere and a globe of so many rings and twice as many columns.
+/// The greatest distance between the unit sphere and a globe of `rings` rings and twice as many columns.
 [[nodiscard]] double globe_error(int rings);
 
-/// The finest grids that are made. A primitive that would need a finer grid gets this one, and then has too many
-/// triangles in total.
+/// The finest grids that are made. A primitive that would need a finer grid gets this one, which alone exceeds the
+/// limit of triangles.
 inline constexpr int finest_level = 1 << 13;
 
 [[nodiscard]] MeshLevel level_of(const Mesh& mesh, const glm::dmat4& world_from_mesh, const ScreenTolerance& tolerance);
 
-/// Steps along the four edges of a patch, each at least those of its grid: u = 0, u = 1 (both along v), v = 0, v = 1.
+/// Numbers of steps along the four edges of a patch: along u = 0 and u = 1, where v grows, and along v = 0 and v = 1.
+/// Each number is at least that of the patch's grid.
 using EdgeLevels = std::array<int, 4>;
 
 /// Edge levels such that each edge is as fine as its finest patch. Levels of patches that are not finite are arbitrary.

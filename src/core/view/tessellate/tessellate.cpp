@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Curved meshes as triangles that are fine enough for one view: first the levels, so that limits are known, then
-// triangles.
+// Curved meshes as triangles that are fine enough for one view. Levels are chosen first, so that limits are checked
+// before any triangle is made.
 //
 //   scene, view --Plan--> a level for every instance of a curved mesh --> one mesh for every pair of mesh and level
 //                         count of triangles, or an error                 instances refer to theirs
@@ -15,8 +15,8 @@
 //   how far a grid is off:          second derivatives of a patch, over 8 u^2, 4 u v and 8 v^2 (PatchBending);
 //                                   for a sphere the height of the cap over a cell of its globe (globe_error)
 //
-// Both are upper bounds, never estimates, because a drawing may have to be right to so many pixels. (D. Filip, R.
-// Magedson, R. Markot. Surface Algorithms Using Bounds on Derivatives. 1986: patches.)
+// Both are upper bounds, never estimates, because a drawing may be required to be right to `pixels` pixels. (D. Filip,
+// R. Magedson, R. Markot. Surface Algorithms Using Bounds on Derivatives. 1986: patches.)
 #include <algorithm>
 #include <cmath>
 #include <compare>
@@ -48,7 +48,8 @@ double greatest_stretch(const glm::dmat3& m) {
   return std::sqrt(most);
 }
 
-/// Doubles, then bisects: globe_error() reads all rings, and falls with their number.
+/// The least number of rings with which the error is within the tolerance. Doubles the number first, and then bisects,
+/// because globe_error() visits all rings, and falls with their number.
 int rings_within(double tolerance) {
   int rings = kFewestRings;
   while (rings < finest_level && globe_error(rings) > tolerance) rings *= 2;
@@ -85,7 +86,7 @@ ScreenTolerance::ScreenTolerance(const View& view, double pixels)
 }
 
 double ScreenTolerance::at(double nearest, double farthest) const {
-  // Nothing of it is seen, so any tessellation will do.
+  // Nothing before the near plane is seen, so any tessellation will do.
   if (farthest < near_) return std::numeric_limits<double>::infinity();
   return anywhere_ + std::max(nearest, near_) * per_distance_;
 }
@@ -125,8 +126,8 @@ PatchLevel PatchBending::level_within(double tolerance) const {
   // A control point is infinite or NaN: tessellate() leaves such patches out.
   if (!std::isfinite(error(level))) return level;  // never seen
   while (error(level) > tolerance && (level.u < finest_level || level.v < finest_level)) {
-    // The direction with the greater share of the error is halved. This quarters its share, and keeps the triangles of
-    // the other direction.
+    // The cells are halved in the direction with the greater share of the error. This quarters that share, and divides
+    // no triangle in the other direction.
     const double by_u = uu_ / level.u / level.u, by_v = vv_ / level.v / level.v;
     // If only the twist remains, the longer cells are halved.
     const bool is_u = by_u != by_v ? by_u > by_v : level.u <= level.v;
@@ -136,14 +137,15 @@ PatchLevel PatchBending::level_within(double tolerance) const {
   return level;
 }
 
-// The four corners of a cell lie on a circle, whose radius R is that about a triangle of a side, a diagonal and a leg.
-// The plane through them is sqrt(1 - R^2) from the centre, and no point of the cell is nearer to it.
+// The four corners of a cell lie on a circle. Its radius R is that of the circle about the triangle of a side, a
+// diagonal and a leg. The plane through the corners is sqrt(1 - R^2) from the centre, and no point of the cell is
+// nearer to the centre.
 double globe_error(int rings) {
   const double half_step = turn(1, 4 * std::int64_t(rings)).y;
   const double leg = 2 * half_step;
   double most = 0;
   for (int i = 0; i < rings; ++i) {
-    // The two parallels of a ring are chords of a column's width; one of them is a point at a pole.
+    // `a` and `b` are chords of the two parallels of a ring, one column wide. At a pole one of them is 0.
     const double a = 2 * turn(i, 2 * rings).y * half_step, b = 2 * turn(i + 1, 2 * rings).y * half_step;
     const double diagonal = std::sqrt(leg * leg + a * b), height = std::sqrt(leg * leg - (a - b) * (a - b) / 4);
     const double radius = leg * diagonal / (2 * height);
@@ -176,7 +178,8 @@ bool comes_before(const glm::dvec3& a, const glm::dvec3& b) {
   return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
 }
 
-/// Edges are equal if all four control points are, to the bit; points that differ by a rounding are apart.
+/// Orders edges. Two edges are equal if all four control points are equal to the bit; points that differ by a rounding
+/// make different edges.
 struct EdgeOrder {
   bool operator()(const EdgePoints& a, const EdgePoints& b) const {
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(), comes_before);
@@ -218,7 +221,7 @@ class GridBuilder {
     const int step_u = lattice_.u / level_.u, step_v = lattice_.v / level_.v;
     const int u0 = i * step_u, u1 = u0 + step_u, v0 = j * step_v, v1 = v0 + step_v;
     const bool last_u = i + 1 == level_.u, last_v = j + 1 == level_.v;
-    // All around, counter-clockwise seen from the outer side; each side without its end.
+    // Walks all around the cell, counter-clockwise as seen from the outer side, along each side without its end.
     around_.clear();
     walk({u0, v0}, {u0, v1}, i == 0 ? lattice_.v / edges_[0] : step_v);
     walk({u0, v1}, {u1, v1}, last_v ? lattice_.u / edges_[3] : step_u);
@@ -241,7 +244,8 @@ class GridBuilder {
     for (; from != to; from.u += by.u * step, from.v += by.v * step) around_.push_back(vertex(from));
   }
 
-  /// Fractions of powers of two: both sides of an edge get the same point, however fine their lattices are.
+  /// The number of the vertex at a place. Places are fractions of powers of two, so both sides of an edge get the same
+  /// point, however fine their lattices are.
   std::uint32_t vertex(const LatticePlace& place) {
     const auto [entry, is_new] = numbers_.try_emplace(place, std::uint32_t(mesh_.positions.size()));
     if (!is_new) return entry->second;
@@ -253,7 +257,7 @@ class GridBuilder {
     return entry->second;
   }
 
-  /// At a pole a side of a cell is a point.
+  /// Adds a triangle unless it is degenerate: at a pole a side of a cell is a point.
   void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     const std::vector<glm::vec3>& p = mesh_.positions;
     if (p[a] != p[b] && p[b] != p[c] && p[c] != p[a]) mesh_.triangles.emplace_back(a, b, c);
@@ -293,7 +297,7 @@ std::vector<EdgeLevels> edge_levels(std::span<const BezierPatch> patches, std::s
 
 namespace {
 
-/// Some 3 GiB of mesh. A double, as the requested number may exceed all integers.
+/// The limit amounts to some 3 GiB of mesh. It is a double, because the requested number may exceed all integers.
 constexpr double kMostTriangles = 1 << 26;
 
 void append_globe(const Sphere& sphere, int rings, std::uint32_t face, Mesh& mesh) {
@@ -322,7 +326,8 @@ Mesh make_triangles(const Mesh& curved, const MeshLevel& level) {
     if (!is_finite(curved.patches[i])) continue;
     const std::size_t before = mesh.triangles.size();
     GridBuilder(curved.patches[i], level.patches[i], edges[i], mesh).add_all(std::uint32_t(curved.spheres.size() + i));
-    // A grid numbers its texture coordinates like its positions; behind spheres their numbers differ.
+    // A grid numbers its texture coordinates like its positions. Behind spheres, the numbers of the two differ by a
+    // constant.
     const auto shift = std::uint32_t(mesh.texcoords.values.size() - mesh.positions.size());
     for (std::size_t t = before; t < mesh.triangles.size(); ++t)
       mesh.texcoords.triangles.push_back(mesh.triangles[t] + shift);
@@ -386,7 +391,8 @@ class Tessellator {
   [[nodiscard]] Scene take() { return std::move(out_); }
 
  private:
-  /// The first level takes the place of the mesh itself.
+  /// Makes the mesh of a key. The first level of a mesh takes the place of the mesh itself. \returns the number of the
+  /// made mesh.
   std::uint32_t make(const Plan::Key& key) {
     const auto& [mesh, level] = key;
     Mesh triangles = make_triangles(out_.meshes[mesh], level);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenEXR: any channels by name, floats as 32-bit float, integers as uint32.
+// OpenEXR files hold any channels by name: floats as 32-bit floats, and integers as uint32.
 //
 // The library has one pool of threads for the whole process, whose size only the program may set. So a picture is cut
 // into strips of rows, and the library writes each strip as a file of its own, in parallel. The compressed rows of all
@@ -70,8 +70,8 @@ struct ExrSizes {
   std::uint64_t width = 0, height = 0, channels = 0;
   unsigned compression = 0;  ///< as in the file: 0 none, 1 RLE, 2 and 3 ZIP, then wavelets and other things
 
-  /// The most bytes of memory that `bytes` bytes of a file can fill. Deflate makes at most 1032 bytes of one. Other
-  /// methods have no bound for plain pictures, so they may always use some memory.
+  /// Returns the most bytes of memory that `bytes` bytes of a file may fill. Deflate makes at most 1032 bytes out of
+  /// one. Other methods pack plain pictures without bound, so they may always fill some memory.
   [[nodiscard]] std::uint64_t most_memory(std::uint64_t bytes) const {
     constexpr std::uint64_t ratio = 1100, always = std::uint64_t(1) << 26;
     return compression <= 3 ? bytes * ratio : std::max(always, bytes * ratio);
@@ -79,14 +79,14 @@ struct ExrSizes {
 };
 
 void read_window(ExrCursor window, ExrSizes& sizes) {
-  // 64 bits, since the difference of two 32-bit corners, plus one, does not fit into 32.
+  // The numbers have 64 bits, because the difference of two 32-bit corners, plus one, does not fit into 32.
   const std::int64_t left = window.number(), top = window.number();
   const std::int64_t right = window.number(), bottom = window.number();
   sizes.width = std::uint64_t(std::max<std::int64_t>(0, right - left + 1));
   sizes.height = std::uint64_t(std::max<std::int64_t>(0, bottom - top + 1));
 }
 
-/// Counts on from earlier lists, because the library adds the channels of a second list to those of the first.
+/// Adds the number of channels in a list to that of earlier lists, because the library also joins several lists.
 void read_channels(ExrCursor list, ExrSizes& sizes, const std::string& name) {
   constexpr std::size_t record = 16;  // type, linearity and sampling
   for (; !list.text().empty(); ++sizes.channels) list.take(record);
@@ -94,7 +94,7 @@ void read_channels(ExrCursor list, ExrSizes& sizes, const std::string& name) {
 }
 
 /// The library reads most attributes by their type and ignores the size that the file states. If size and type
-/// disagree, the library would parse another header than this check.
+/// disagree, the library would read other attributes than this check.
 constexpr std::size_t any_size = ~std::size_t(0);
 constexpr std::pair<std::string_view, std::size_t> attribute_sizes[] = {
     {"box2i", 16},        {"box2f", 16},   {"chlist", any_size}, {"chromaticities", 32},
@@ -203,7 +203,8 @@ class MemoryInput : public Imf::IStream {
   std::size_t place_ = 0;
 };
 
-/// The planes of `image` as memory to read from or write to, for a window whose first pixel is (left, top).
+/// Describes the planes of `image` to the library as memory to read from or write to, for a window whose first pixel is
+/// (left, top).
 Imf::FrameBuffer frame_buffer(Image& image, int left, int top) {
   const std::size_t stride = exr_value_size * std::size_t(image.width);
   Imf::FrameBuffer frame;
@@ -218,7 +219,8 @@ Imf::FrameBuffer frame_buffer(Image& image, int left, int top) {
   return frame;
 }
 
-/// Order of channels: colours first and in their usual order. The file sorts all channels by name.
+/// Returns the rank of a channel in an image: colours come first, in their usual order. The file sorts channels by
+/// name.
 int rank(const std::string& channel) {
   constexpr std::string_view first[] = {"R", "G", "B", "A"};
   return int(std::find(std::begin(first), std::end(first), channel) - std::begin(first));
@@ -241,12 +243,12 @@ Image empty_image(const Imf::Header& header, const std::string& name) {
   return image;
 }
 
-constexpr int chunk_rows = 16;  // of one ZIP chunk
+constexpr int chunk_rows = 16;  // rows of one ZIP chunk
 
 /// A file with some rows of an image.
 struct RowStrip {
   std::vector<std::byte> bytes;
-  std::size_t start = 0;  ///< start of the compressed rows, behind the header and a table with one offset a chunk
+  std::size_t start = 0;  ///< start of the compressed rows, behind the header and a table with one offset per chunk
 };
 
 enum class Pixels : bool { left_out, written };
@@ -295,7 +297,7 @@ class DeepRow {
         counts_(std::size_t(image.width)),
         pointers_(image.channels.size(), std::vector<const char*>(std::size_t(image.width))) {}
 
-  /// The frame buffer serves all rows: each row fills the same memory anew.
+  /// Returns a frame buffer for all rows: each row fills the same memory anew.
   [[nodiscard]] Imf::DeepFrameBuffer frame_buffer() {
     Imf::DeepFrameBuffer frame;
     frame.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts_.data()), sizeof counts_[0], 0));
@@ -346,7 +348,7 @@ void save_exr(const Image& image, OutputFile& file, const Execution& execution) 
   if (image.channels.size() > most_exr_channels)
     throw Error(ErrorCode::unsupported, file.name(), "EXR", "more than 1024 channels");
   constexpr int strip_rows = 4 * chunk_rows;
-  auto& planes = const_cast<Image&>(image);  // which are only read
+  auto& planes = const_cast<Image&>(image);  // the planes are only read
   std::vector<RowStrip> strips((std::size_t(image.height) + strip_rows - 1) / strip_rows);
   RowStrip head;
   with_named_errors(file.name(), ErrorCode::unsupported, [&] {

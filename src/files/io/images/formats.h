@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The image formats behind save() and load_image(), and textures: PNG, JPEG and WebP bytes to 8-bit RGBA pixels.
+// The image formats behind save() and load_image(), and the decoders that turn PNG, JPEG and WebP into textures of
+// 8-bit RGBA.
 #pragma once
 
 #include <cstddef>
@@ -18,27 +19,27 @@ namespace frontmost {
 inline constexpr int max_image_side = 16384;
 inline constexpr std::uint64_t max_image_pixels = std::uint64_t(1) << 28;
 
-/// Decodes a texture by `decoder`, or, if that is null, a PNG, a JPEG or a WebP, told apart by content. Grey, palette
-/// and transparent-colour images become RGBA; 16 bits are rounded to 8; gamma chunks and colour profiles are left
-/// aside, as glTF asks. `name` begins every message. \throws Error file_malformed (truncated files included),
+/// Decodes a texture by `decoder`. If that is null, decodes a PNG, JPEG or WebP, and recognizes the format by content.
+/// Grey, palette and transparent-colour images become RGBA. 16 bits are rounded to 8. Gamma chunks and colour profiles
+/// are ignored, as glTF asks. `name` begins every message. \throws Error file_malformed (truncated files included),
 /// unsupported, limit_exceeded; bad_argument if the decoder's result has not the size that the decoder announced.
 [[nodiscard]] Texture decode_texture(std::span<const std::byte> bytes, const std::string& name,
                                      const ImageDecoder* decoder = nullptr);
 
-/// Width and height, by `decoder` or as the file's header states them, without decoding. Limits and errors are those of
-/// decode_texture().
+/// Returns width and height as `decoder` or the file's header states them, without decoding the pixels. Limits and
+/// errors are those of decode_texture().
 [[nodiscard]] glm::ivec2 texture_size(std::span<const std::byte> bytes, const std::string& name,
                                       const ImageDecoder* decoder = nullptr);
 
-/// Whether WebP images can be decoded: by `decoder`, or, if that is null, by this build.
+/// Whether WebP images can be decoded, by `decoder` or, if it is null, by this build.
 [[nodiscard]] bool decodes_webp(const ImageDecoder* decoder);
 
 }  // namespace frontmost
 
 namespace frontmost::detail {
 
-/// Writers get images whose planes have the right sizes. \throws Error unsupported, before anything is written, naming
-/// the file and what the format cannot hold.
+/// The writers expect images whose planes have the right sizes. \throws Error unsupported before anything is written;
+/// the message names the file and what the format cannot hold.
 void save_png(const Image& image, const SaveOptions& options, OutputFile& file, const Execution& execution);
 void save_png(const Bitmap& bitmap, OutputFile& file, const Execution& execution);
 void save_exr(const Image& image, OutputFile& file, const Execution& execution);
@@ -56,20 +57,22 @@ struct PictureRows {
   [[nodiscard]] std::size_t row_bytes() const { return std::size_t(with_alpha ? 4 : 3) * std::size_t(width); }
 };
 
-/// Empty unless the channels are R, G, B, or R, G, B, A, of floats. O(pixels), to look for alpha.
+/// Returns the rows of a picture whose channels are R, G and B, and perhaps A, all of floats; otherwise nothing.
+/// O(pixels), because it looks for alpha.
 [[nodiscard]] std::optional<PictureRows> picture_rows(const Image& image);
 [[nodiscard]] PictureRows picture_rows(const Bitmap& bitmap);
 
-/// Lossy formats. `quality` is 1 to 100. The writers check the sides before they allocate memory.
-/// \throws Error limit_exceeded; unsupported: JPEG holds no alpha; WebP in a build without libwebp.
+/// Writers of lossy formats. `quality` is 1 to 100. The writers check the side lengths before they allocate memory.
+/// \throws Error limit_exceeded; unsupported for a JPEG of a picture with alpha, or for WebP in a build without
+/// libwebp.
 void save_jpeg(const PictureRows& picture, int quality, OutputFile& file, const Execution& execution);
 void save_webp(const PictureRows& picture, int quality, OutputFile& file, const Execution& execution);
 
-/// A texture as a whole PNG, 8 bits a channel with alpha, for model files. \throws Error limit_exceeded if PNG cannot
-/// hold the size; unsupported in a build without libpng.
+/// Returns a texture as the bytes of a PNG file with 8 bits per channel and alpha, for model files. \throws Error
+/// limit_exceeded if PNG cannot hold the size; unsupported in a build without libpng.
 [[nodiscard]] std::string png_bytes(const Texture& texture);
 
-/// Header of a NumPy array file. `type` is written as in Python; `shape` holds numbers with commas.
+/// Returns the header of a NumPy array file. `type` is Python text; `shape` is numbers separated by commas.
 [[nodiscard]] std::string npy_header(const std::string& type, const std::string& shape);
 
 /// Readers check each size against the file's size before they allocate memory. `name` begins every message.
@@ -87,25 +90,26 @@ enum class ImagePart : std::uint8_t { size, pixels };
 [[nodiscard]] Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, ImagePart part);
 [[nodiscard]] bool has_webp();
 
-/// Check of every decoder between header and pixels. `densest` is the greatest number of pixels that one byte of a
-/// valid file can hold. A header that claims more belongs to a truncated or hostile file, and no memory is allocated
-/// for it. `format` is the place of an error.
+/// Checks a size before any pixel is decoded; every decoder calls this function after it has read the header. `densest`
+/// is the greatest number of pixels that one byte of a valid file can hold. A header that claims more belongs to a
+/// truncated or hostile file, for which no memory is allocated. `format` is the place of an error.
 void check_image_size(const std::string& name, std::uint64_t width, std::uint64_t height, std::size_t byte_count,
                       double densest, const char* format = "");
 
 /// Keywords of the text chunks that tell the meaning of the numbers in a PNG map, for load_image().
-inline constexpr const char* png_channel_key = "frontmost:channel";  ///< a name; "N" for the three of a direction
+inline constexpr const char* png_channel_key = "frontmost:channel";  ///< name of the channel; "N" for the three
+                                                                     ///< channels of a direction
 inline constexpr const char* png_scale_key = "frontmost:scale";      ///< depth = (value - offset) / scale
 inline constexpr const char* png_offset_key = "frontmost:offset";
 inline constexpr const char* png_ids_key = "frontmost:ids";  ///< marks an id map; id = value - 1
 
-/// A channel's values as they lie in memory, four bytes each.
+/// Returns a channel's values as they lie in memory, four bytes each.
 [[nodiscard]] inline const std::byte* bytes_of(const Channel& channel) {
   return channel.is_integer() ? reinterpret_cast<const std::byte*>(channel.integers().data())
                               : reinterpret_cast<const std::byte*>(channel.floats().data());
 }
 
-/// The image's channel names as "R, G, B", for messages.
+/// Returns the image's channel names as "R, G, B", for messages.
 [[nodiscard]] std::string channel_list(const Image& image);
 
 }  // namespace frontmost::detail

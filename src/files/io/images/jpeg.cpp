@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// JPEG by libjpeg-turbo. Written: baseline, with colours at full resolution. Halved colours, the library's default,
-// make files of rendered pictures a sixth to a quarter smaller, but double the greatest error at edges of colours.
-// Read: baseline and progressive, grey, colour and four-ink images.
+// JPEG by libjpeg-turbo. Files are written in baseline JPEG with colours at full resolution. Halved colours, the
+// library's default, make files of rendered pictures a sixth to a quarter smaller, but double the greatest error at
+// edges of colours. Baseline and progressive files are read, with grey, colour and four-ink images.
 //
-// libjpeg reports errors by longjmp, which must not pass over C++ objects. The functions that call setjmp hold none;
-// their data lies in JpegWriter and JpegReader.
+// libjpeg reports errors by longjmp, which must not pass over C++ objects. The functions that call setjmp have no such
+// objects; their data lies in JpegWriter and JpegReader.
 // clang-format off
 #include <cstdio>  // jpeglib.h needs it first
 #include <jpeglib.h>
@@ -169,7 +169,7 @@ bool read_rows(JpegReader& reader, unsigned char* pixels, std::size_t row_bytes)
   return true;
 }
 
-/// Adobe writes inverted inks (0 is full ink), other programs do not.
+/// Converts four inks to colours. Adobe writes inverted inks (0 is full ink), other programs do not.
 void inks_to_rgb(Texture& texture, bool inverted) {
   for (glm::u8vec4& pixel : texture.pixels) {
     const glm::uvec4 paper = inverted ? glm::uvec4(pixel) : 255u - glm::uvec4(pixel);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images and textures in: recognizes their formats, holds the limits that all decoders share, and converts environments
-// to the one layout that lighting expects.
+// Reads images and textures: recognizes their formats, holds the limits that all decoders share, and converts
+// environments to the one layout that lighting expects.
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -55,7 +55,7 @@ Texture decode(std::span<const std::byte> bytes, const std::string& name, detail
               bytes.empty() ? "the image is empty" : "neither PNG nor JPEG nor WebP");
 }
 
-/// Runs the caller's decoder. Its errors do not know the file's name, which is added here.
+/// Runs the caller's decoder. Adds the file's name to its errors, which lack the name.
 template <class Ask>
 auto ask_decoder(const std::string& name, Ask ask) {
   try {
@@ -65,7 +65,7 @@ auto ask_decoder(const std::string& name, Ask ask) {
   }
 }
 
-/// Replaces values out of range as load_environment() documents.
+/// Returns a value of an environment, replaced as load_environment() documents if it is out of range.
 float usable_light(float value) {
   constexpr float infinity = std::numeric_limits<float>::infinity(), greatest_half = 65504;
   if (!(value > 0)) return 0;  // NaN too
@@ -129,7 +129,7 @@ glm::ivec2 texture_size(std::span<const std::byte> bytes, const std::string& nam
     return {header.width, header.height};
   }
   const glm::ivec2 size = ask_decoder(name, [&] { return decoder->size(bytes); });
-  constexpr double any_density = double(max_image_pixels);  // a caller's format may be as dense as it likes
+  constexpr double any_density = double(max_image_pixels);  // callers' formats may be of any density
   detail::check_image_size(name, std::uint64_t(std::max(size.x, 0)), std::uint64_t(std::max(size.y, 0)), 1,
                            any_density);
   return size;

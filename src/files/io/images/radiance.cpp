@@ -20,7 +20,7 @@ namespace {
   throw Error(code, name, "Radiance", reason);
 }
 
-/// The start of a text of the file, quoted for messages.
+/// Returns the start of a text of the file, in quotes for messages.
 std::string quoted(std::string_view text) {
   std::string quote(1, '"');
   quote += text.substr(0, 40);
@@ -28,12 +28,12 @@ std::string quoted(std::string_view text) {
   return quote;
 }
 
-/// The rest of the file that is not read yet.
+/// The bytes of the file that are not read yet.
 class RadianceBytes {
  public:
   RadianceBytes(std::span<const std::byte> bytes, const std::string& name) : rest_(bytes), name_(name) {}
 
-  /// The next line of the header, without its end.
+  /// Takes the next line of the header. \returns the line without its end.
   std::string_view line() {
     const auto* text = reinterpret_cast<const char*>(rest_.data());
     const void* end = rest_.empty() ? nullptr : std::memchr(text, '\n', rest_.size());
@@ -42,7 +42,7 @@ class RadianceBytes {
     rest_ = rest_.subspan(length + 1);
     return {text, length > 0 && text[length - 1] == '\r' ? length - 1 : length};
   }
-  /// The next `count` bytes. Messages name `row`.
+  /// Takes the next `count` bytes. Messages name `row`.
   const std::uint8_t* take(std::size_t count, std::size_t row) {
     if (count > rest_.size()) fail_radiance(name_, "row " + std::to_string(row) + " is cut short");
     const auto* taken = reinterpret_cast<const std::uint8_t*>(rest_.data());
@@ -102,7 +102,8 @@ struct RadianceRow {
   std::size_t number = 0;  ///< row of the file, for messages
 };
 
-/// A byte above 128 says how often the next byte is repeated; any other says how many plain bytes follow.
+/// Reads a row of packed components. A byte above 128 says how often the next byte is repeated; any other byte says how
+/// many plain bytes follow.
 void read_packed(RadianceBytes& bytes, RadianceRow& row, const std::string& name) {
   for (std::vector<std::uint8_t>& component : row.components)
     for (std::size_t x = 0; x < component.size();) {
@@ -161,7 +162,7 @@ void read_row(RadianceBytes& bytes, RadianceRow& row, const std::string& name) {
 Image load_radiance(std::span<const std::byte> bytes, const std::string& name) {
   RadianceBytes rest(bytes, name);
   const RadianceSize size = read_radiance_header(rest, name);
-  // A row of one colour takes one pixel and one run.
+  // A file is densest if its rows have one colour each: such a row takes one pixel and one run.
   const double densest = double(std::max<std::size_t>(size.width, 2)) / 8;
   check_image_size(name, size.width, size.height, rest.rest().size(), densest, "Radiance");
   Image image{int(size.width), int(size.height), {}};

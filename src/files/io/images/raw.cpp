@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// NPY and PFM: a short header, and raw numbers row by row, the channels of a pixel side by side.
+// NPY and PFM files have a short header, and then raw numbers row by row, with the channels of a pixel side by side.
 //
 // NumPy arrays have a Python dictionary with type, order and shape. Portable float maps have "PF" (three channels) or
 // "Pf" (one), width and height, and a scale whose sign gives the byte order, each on a line of its own. The bottom row
@@ -58,7 +58,7 @@ void write_raw(const Image& image, const RawLayout& layout, OutputFile& file) {
   }
 }
 
-/// Channel names for formats that store none: see load_image().
+/// Returns channel names for formats that store none: see load_image().
 std::vector<std::string> default_channel_names(std::size_t count, bool integers) {
   if (count == 1) return {integers ? "primitive" : "Z"};
   if (count == 3 && !integers) return {"R", "G", "B"};
@@ -68,7 +68,8 @@ std::vector<std::string> default_channel_names(std::size_t count, bool integers)
   return names;
 }
 
-/// \throws Error file_malformed if `bytes` does not have exactly the layout's size; limit_exceeded.
+/// Reads the channels behind the header. \throws Error file_malformed if `bytes` does not have exactly the layout's
+/// size; limit_exceeded.
 Image read_raw(std::span<const std::byte> bytes, const RawLayout& layout, const std::string& name, const char* format) {
   constexpr std::size_t most_channels = 1024;
   if (layout.channels < 1 || layout.channels > most_channels)
@@ -103,7 +104,7 @@ Image read_raw(std::span<const std::byte> bytes, const RawLayout& layout, const 
 
 constexpr std::string_view magic = "\x93NUMPY"sv;
 constexpr std::size_t prefix_size = 10;  // magic, version, length of the dictionary
-// Alignment of the numbers that NumPy itself uses since version 1.14, so that files can be mapped.
+// The numbers are aligned as NumPy aligns them since version 1.14, so that files can be mapped.
 constexpr std::size_t alignment = 64;
 
 [[noreturn]] void fail_npy(const std::string& name, const std::string& reason) {
@@ -116,7 +117,7 @@ std::string shape_of(const Image& image) {
   return shape;
 }
 
-/// The dictionary's text, and its end, at which the numbers begin.
+/// The text of the dictionary, and the place in the file where it ends and the numbers begin.
 struct Dictionary {
   std::string_view text;
   std::size_t end = 0;
@@ -137,7 +138,7 @@ Dictionary dictionary(std::span<const std::byte> bytes, const std::string& name)
   return {{reinterpret_cast<const char*>(bytes.data()) + start, length}, start + length};
 }
 
-/// The text behind `key` and a colon in the dictionary. NumPy always writes keys in single quotes.
+/// Returns the text that follows `key` and a colon in the dictionary. NumPy always writes keys in single quotes.
 std::string_view value_of(std::string_view text, std::string_view key, const std::string& name) {
   // This is no parser of Python: keys are found as NumPy writes them, and any other spelling is refused.
   const std::size_t place = text.find(key);
@@ -267,7 +268,7 @@ Image load_pfm(std::span<const std::byte> bytes, const std::string& name) {
   const std::string_view scale = header.word();
   // A scale of 0 is refused: its sign cannot give the byte order, because 0 and -0 are one number.
   if (scale.find_first_of("123456789") == std::string_view::npos) fail_pfm(name, "the scale is not a number");
-  layout.big_endian = scale[0] != '-';  // the scale's size has no agreed meaning and is ignored
+  layout.big_endian = scale[0] != '-';  // the scale's magnitude has no agreed meaning and is ignored
   layout.bottom_row_first = true;
   return read_raw(header.rest(), layout, name, "PFM");
 }

@@ -72,7 +72,7 @@ std::optional<PictureRows> picture_rows(const Image& image) {
 }
 
 PictureRows picture_rows(const Bitmap& bitmap) {
-  constexpr std::size_t bytes = 4;  // a pixel
+  constexpr std::size_t bytes = 4;  // bytes per pixel
   const std::size_t size = bitmap.rgba.size();
   std::uint8_t least = 255;
   // The loop has no branches and no early exit, which is faster than stopping at the first transparent pixel.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures for terminals: two pixels a character, drawn as the upper half block and its background.
+// Pictures for terminals. A character shows two pixels, one above the other, by the upper half block and its
+// background.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,7 +34,7 @@ struct PixelSpan {
 
 using TerminalColor = std::array<double, 4>;
 
-/// The mean colour of a box, in linear light and premultiplied, so that edges keep their brightness.
+/// Returns the mean colour of a box, in linear light and premultiplied, so that edges keep their brightness.
 TerminalColor box_mean(const ColorPlanes& planes, const PixelSpan& columns, const PixelSpan& rows) {
   TerminalColor sum{};
   double weights = 0;
@@ -69,7 +70,8 @@ int distance2(const std::array<int, 3>& a, const std::array<int, 3>& b) {
   return sum;
 }
 
-/// The nearest of xterm's 256 colours that look alike in every terminal: a cube of 6 levels, and 24 greys.
+/// Returns the nearest of xterm's colours 16 to 255, which look alike in every terminal: a cube of 6 levels per
+/// channel, and 24 greys.
 int palette_index(const std::array<int, 3>& srgb) {
   constexpr int levels[] = {0, 95, 135, 175, 215, 255};
   std::array<int, 3> step{}, cube{};

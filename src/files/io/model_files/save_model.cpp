@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Models out: chooses the format by suffix, and writes PLY, binary STL and GLB. A GLB is a glTF document of objects
-// that refer to meshes, one primitive for each material of a mesh, and materials with layers and textures. It is JSON
-// that names pieces of one buffer.
+// Writes models: chooses the format by suffix, PLY, binary STL or GLB. A GLB is a glTF document of objects that refer
+// to meshes. A mesh has one primitive for each of its materials, and materials have layers and textures. The document
+// is JSON that names pieces of one buffer.
 //
 //   Mesh       positions 0 1 2 3      normals 0 1 with indices of their own: a corner is (position, normal, ...)
 //   glTF       vertices (0, 0) (1, 0) (1, 1) ...: each pair that a corner has, once
@@ -23,8 +23,8 @@ namespace {
 using detail::append_bytes;
 using detail::FileBytes;
 
-/// One object's triangles in the file's coordinates. Triangles of mirrored objects get the opposite winding, so that
-/// their outer side stays outside.
+/// The triangles of one object in the file's coordinates. Triangles of mirrored objects get the opposite winding, so
+/// that their outer side stays outside.
 class PlacedMesh {
  public:
   PlacedMesh(const Scene& scene, const Instance& instance)
@@ -65,7 +65,7 @@ std::string ply_header(const Scene& scene, const Table& of_triangles) {
   return text + "end_header\n";
 }
 
-/// All objects as one mesh, with further properties of its faces.
+/// Writes all objects as one mesh, with further properties of its faces.
 void write_ply(const Scene& scene, const Table& of_triangles, OutputFile& file) {
   FileBytes sink(file);
   sink.bytes() = ply_header(scene, of_triangles);
@@ -98,7 +98,7 @@ void write_ply(const Scene& scene, const Table& of_triangles, OutputFile& file) 
   sink.finish();
 }
 
-/// Triangles and their normals, nothing else.
+/// Writes triangles and their normals, and nothing else.
 void write_stl(const Scene& scene, OutputFile& file) {
   FileBytes sink(file);
   sink.bytes() = "Frontmost";  // anything but "solid", which begins the text form of STL
@@ -123,7 +123,7 @@ void write_stl(const Scene& scene, OutputFile& file) {
 
 using Json = nlohmann::ordered_json;
 
-// Numbers of these constants in glTF.
+// The numbers by which glTF names types and uses of buffers.
 constexpr int float_type = 5126, unsigned_int_type = 5125, vertex_target = 34962, index_target = 34963;
 
 float within(float value, float low, float high) { return std::clamp(std::isfinite(value) ? value : low, low, high); }
@@ -145,7 +145,7 @@ class GlbDocument {
  public:
   explicit GlbDocument(const Scene& scene) : scene_(scene) {}
 
-  /// The whole JSON part except the buffer, which is the file's second part.
+  /// The whole JSON part except for the buffer, which is the file's second part.
   Json json = {{"asset", {{"version", "2.0"}, {"generator", "Frontmost"}}}};
   std::string buffer;
 
@@ -158,13 +158,13 @@ class GlbDocument {
     buffer += bytes;
     return append("bufferViews", std::move(view));
   }
-  /// \returns the number of the accessor.
+  /// Adds an accessor and a view with its bytes. \returns the number of the accessor.
   std::size_t add_accessor(Json accessor, const std::string& bytes, int target) {
     accessor["bufferView"] = add_view(bytes, target);
     return append("accessors", std::move(accessor));
   }
-  /// The number in the document of the scene's texture or material `number` (no_index: the default material). The first
-  /// request adds it to the document.
+  /// Returns the number that the scene's texture or material `number` has in the document; no_index is the default
+  /// material. The first request adds the texture or material to the document.
   std::size_t texture(std::uint32_t number) {
     const auto [place, is_new] = textures_.emplace(number, textures_.size());
     if (is_new) {
@@ -197,8 +197,8 @@ class GlbDocument {
   std::set<std::string> extensions_;
 };
 
-/// Writes a material, with each use of a texture in the object that it belongs to. Values that equal glTF's defaults
-/// and layers that are absent are left out.
+/// Writes a material. Each use of a texture is written in the JSON object that it belongs to. Values that equal glTF's
+/// defaults and layers that are absent are left out.
 class MaterialWriter {
  public:
   explicit MaterialWriter(GlbDocument& document) : document_(document) {}
@@ -245,7 +245,7 @@ class MaterialWriter {
         {"offset", {use.offset.x, use.offset.y}}, {"rotation", use.rotation}, {"scale", {use.scale.x, use.scale.y}}};
     return json;
   }
-  /// The strength is written separately if it is above 1.
+  /// Writes the emitted light. Its strength is written separately if it is above 1.
   void write_emission(Json& json, const Material& material) {
     const float most = std::max({material.emissive.x, material.emissive.y, material.emissive.z});
     set(json, "emissiveTexture", material.emissive_texture);
@@ -313,7 +313,7 @@ std::size_t GlbDocument::material(std::uint32_t number) {
   return place->second;
 }
 
-/// Indices of a corner's values: position, normal, colour, and texture coordinates by set.
+/// The numbers of a corner's values: position, normal, colour, and texture coordinates by set.
 using CornerKey = std::array<std::uint32_t, 3 + max_texcoord_sets>;
 
 CornerKey corner_key(const Mesh& mesh, std::uint32_t triangle, int corner) {
@@ -376,14 +376,15 @@ bool is_all_finite(const std::vector<T>& values) {
   return true;
 }
 
-/// glTF requires normals of unit length. If any normal has no direction, none are written, and readers compute them.
+/// Whether the normals of a mesh are written. glTF requires normals of unit length. If any normal has no direction,
+/// none are written, and readers compute them.
 bool has_normals(const Mesh& mesh) {
   return !mesh.normals.empty() && is_all_finite(mesh.normals.values) &&
          std::all_of(mesh.normals.values.begin(), mesh.normals.values.end(),
                      [](const glm::vec3& n) { return glm::length(glm::dvec3(n)) > 1e-30; });
 }
 
-/// The primitive that holds the triangles of one material.
+/// Returns the primitive that holds the triangles of one material.
 Json part_json(GlbDocument& document, const Mesh& mesh, std::uint32_t material,
                const std::vector<std::uint32_t>& triangles) {
   const WeldedCorners corners = weld_corners(mesh, triangles);
@@ -411,7 +412,7 @@ Json part_json(GlbDocument& document, const Mesh& mesh, std::uint32_t material,
   return part;
 }
 
-/// Null if nothing of the mesh can be written.
+/// Returns a mesh, or null if none of its triangles can be written.
 Json mesh_json(GlbDocument& document, const Mesh& mesh) {
   std::map<std::uint32_t, std::vector<std::uint32_t>> triangles;  // by material
   const auto is_finite_at = [&](std::uint32_t vertex) { return is_finite(mesh.positions[vertex]); };
@@ -424,7 +425,7 @@ Json mesh_json(GlbDocument& document, const Mesh& mesh) {
   return parts.empty() ? Json() : Json{{"name", utf8_text(mesh.name)}, {"primitives", std::move(parts)}};
 }
 
-/// The transform from the scene's axes and origin to the axes of glTF's world, in which y is up and z is front.
+/// Returns the transform from the scene's axes and origin to the axes of glTF's world, in which y is up and z is front.
 Json root_matrix(const Scene& scene) {
   const glm::dvec3 up = direction(scene.up), right = up.x == 0 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
   const glm::dvec3 front = glm::cross(right, up);

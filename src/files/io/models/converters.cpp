@@ -12,7 +12,7 @@ namespace {
 struct Converter {
   std::string_view program, command;
 };
-// Gmsh tessellates by OpenCASCADE, 48 edges a circle; assimp keeps materials and the tree of objects.
+// Gmsh tessellates by OpenCASCADE, here with 48 edges for a circle. Assimp keeps materials and the tree of objects.
 constexpr Converter gmsh{"Debian package gmsh", "gmsh -2 -clcurv 48 {in} -o {out}.stl"};
 constexpr Converter assimp{"Debian package assimp-utils", "assimp export {in} {out}.glb"};
 constexpr Converter blender{
@@ -45,15 +45,16 @@ struct ForeignExtension {
   std::string_view name;
   const Converter& converter;
 };
-/// Table of extensions. The first one that a file has chooses the command, which also decodes the later ones.
+/// Extensions in order of precedence. The first one that a file has chooses the command, which also decodes the later
+/// ones.
 constexpr ForeignExtension foreign_extensions[] = {{"KHR_texture_basisu", ktx_to_png},
                                                    {"EXT_texture_webp", webp_to_png},
                                                    {"KHR_draco_mesh_compression", decompress},
                                                    {"EXT_meshopt_compression", decompress},
                                                    {"KHR_meshopt_compression", decompress}};
 
-/// Quotes `path` for a shell's command line if needed. Further quotes would end a text that is in quotes already, so a
-/// plain name stands for the file there.
+/// Quotes `path` for a shell's command line if needed. Within a text that is in quotes already, further quotes would
+/// end the text, so a plain name stands for the file there.
 std::string word_of(const std::string& path, bool is_in_quotes) {
   constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-/+,:@%";
   if (path.find_first_not_of(plain) == std::string::npos && !path.starts_with('-')) return path;

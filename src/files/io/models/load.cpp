@@ -20,7 +20,7 @@
 namespace frontmost {
 namespace {
 
-/// The first bytes as text, without leading white space and comment lines.
+/// Returns the first bytes as text, without leading white space and comment lines.
 std::string_view first_statement(Bytes bytes) {
   constexpr std::size_t window = 1 << 16;
   std::string_view text = text_of(bytes.first(std::min(bytes.size(), window)));
@@ -36,7 +36,7 @@ bool starts_with_word(std::string_view text, std::string_view word) {
 }
 
 bool looks_like_off(std::string_view text) {
-  // [ST][C][N][4][n]OFF, the prefixes in any order and the first count perhaps without a blank before it.
+  // The first word is [ST][C][N][4][n]OFF, its prefixes in any order. The first count may follow without a blank.
   text.remove_prefix(std::min(text.find_first_not_of("STCN4n"), text.size()));
   constexpr std::string_view followers = " \t\r\n#0123456789";
   return text.starts_with("OFF") && (text.size() == 3 || followers.find(text[3]) != std::string_view::npos);
@@ -52,7 +52,7 @@ bool looks_like_obj(std::string_view text) {
 /// searched.
 bool has_asset(Bytes bytes) { return text_of(bytes).find("\"asset\"") != std::string_view::npos; }
 
-/// A remark about the points of a scene without triangles.
+/// Returns a remark about the points of a scene without triangles.
 std::string points_told(const Scene& scene) {
   std::size_t points = 0;
   for (const Mesh& mesh : scene.meshes) points += mesh.positions.size();

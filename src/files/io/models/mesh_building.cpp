@@ -3,13 +3,13 @@
 // copied, nothing is cut, and no list of faces is kept while each polygon so far was one triangle.
 //
 // Polygons are cut by ear clipping with exact predicates. Each cut takes a triangle of the polygon's winding, so signed
-// areas add up: triangles that all turn left cover a polygon that does not cross itself exactly once. So a fan whose
-// triangles all turn left needs no further test; it serves all convex polygons. Cutting takes O(n log n), unless ears
+// areas add up: if a polygon does not cross itself, triangles that all turn left cover it exactly once. So a fan whose
+// triangles all turn left needs no further test. It serves all convex polygons. Cutting takes O(n log n), unless ears
 // are far apart: the search for an ear takes O(n) tests at worst.
 //
-// If an outline touches itself, rounding makes edges cross slightly that should coincide, unless they share both
-// corners. Then there may be no ear left, and a triangle turns the other way. In that case all triangulations are
-// tried, which takes O(n^3), and the one with the least area of such triangles is chosen.
+// If an outline touches itself, edges that should coincide cross slightly by rounding, unless they share both corners.
+// Then there may be no ear left, and a triangle turns the other way. In that case all triangulations are tried, which
+// takes O(n^3), and the one with the least area of such triangles is chosen.
 #include "io/models/mesh_building.h"
 
 #include <algorithm>
@@ -28,12 +28,12 @@ namespace {
 struct BlockableEar {
   const std::array<glm::vec2, 3>& corners;
 
-  /// The sides of ab, bc and ca on which a point lies; +1 is the inner side.
+  /// Returns for each of the edges ab, bc and ca the side on which a point lies; +1 is the inner side.
   [[nodiscard]] std::array<int, 3> sides(const glm::vec2& p) const {
     const auto& [a, b, c] = corners;
     return {orientation(a, b, p), orientation(b, c, p), orientation(c, a, p)};
   }
-  /// False only if the ear holds no point of the box, not even on its edges.
+  /// Whether the ear may hold a point of the box. False only if it holds none, not even on its edges.
   [[nodiscard]] bool may_hold(const glm::vec2& low, const glm::vec2& high) const {
     for (std::size_t k = 0; k < 3; ++k) {
       const glm::vec2 &from = corners[k], &to = corners[(k + 1) % 3];
@@ -82,7 +82,7 @@ class CornerTree {
     nodes_[0] = {{}, {}, 0, count, 0};
     build(0);
   }
-  /// O(log n).
+  /// Sets or clears the mark of a corner. O(log n).
   void mark(std::uint32_t corner, bool is_marked) {
     if (bool(is_marked_[corner]) == is_marked) return;
     is_marked_[corner] = is_marked;
@@ -93,9 +93,9 @@ class CornerTree {
   }
 
   /// Whether a marked corner blocks the ear a, b, c with its tip at b. A corner blocks if one of its edges leads into
-  /// the ear. If `by_touching`, two more corners block: one on an edge of the ear, and one at b whose edges follow
-  /// those of the ear, as it may belong to a bridge that turns there. Adds to `work` the number of boxes and corners
-  /// tested.
+  /// the ear. If `by_touching`, two more kinds of corners block: those on an edge of the ear, and those at b whose
+  /// edges follow those of the ear, because they may belong to a bridge that turns there. Adds to `work` the number of
+  /// boxes and corners tested.
   [[nodiscard]] bool blocks(const std::array<glm::vec2, 3>& ear, bool by_touching, std::uint64_t& work) const {
     const auto& [a, b, c] = ear;
     const glm::vec2 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
@@ -166,7 +166,7 @@ class CornerTree {
 
 namespace {
 
-/// Twice the polygon's area, projected along each axis (M. Newell).
+/// Returns twice the polygon's area, projected along each axis (M. Newell).
 glm::dvec3 area_vector(std::span<const glm::vec3> corners) {
   glm::dvec3 sum{0};
   const glm::dvec3 origin(corners[0]);
@@ -175,7 +175,7 @@ glm::dvec3 area_vector(std::span<const glm::vec3> corners) {
   return sum;
 }
 
-/// Clamps to [0, 1]. NaN gives 1, so that an undefined colour changes nothing.
+/// Clamps a value to [0, 1]. NaN becomes 1, so that an undefined colour changes nothing.
 float clamped(float value) { return value < 0 ? 0.0f : (value < 1 ? value : 1.0f); }
 
 float linear(float srgb) {
@@ -358,7 +358,8 @@ class Triangulator::Cutter {
   std::vector<Cut> cuts_;  ///< at begin * count + end
   std::vector<glm::uvec3> triangles_;
   std::uint64_t work_ = 0, allowed_work_ = 1 << 25;  ///< counted in boxes and corners tested against ears
-  bool is_flat_ = true;                              ///< whether the polygon has a direction to be seen from
+  bool is_flat_ = true;                              ///< whether the polygon has an area, and so a direction to be seen
+                                                     ///< from
 };
 
 Triangulator::Triangulator() : cutter_(std::make_unique<Cutter>()) {}

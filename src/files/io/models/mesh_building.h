@@ -11,14 +11,15 @@
 
 namespace frontmost {
 
-/// Greatest number of objects: each costs some hundred bytes, and a few bytes of text can start one.
+/// Greatest number of objects, because each costs some hundred bytes, and a few bytes of text can start one.
 inline constexpr std::size_t max_objects = std::size_t(1) << 20;
 
-/// Adds an empty mesh and its one instance, both called `name`. `place` is for the error if there are too many.
+/// Adds an empty mesh and its one instance, both called `name`. The error names `place` if there are too many objects.
 Mesh& add_object(Scene& scene, const std::string& name, const ModelSource& source, const std::string& place);
 
-/// Cuts the polygons of a file into triangles: always corner count - 2 of them, the same ones on every machine. Keeps
-/// its arrays from polygon to polygon, and counts the work of all of them, so that hostile files cannot make it slow.
+/// Cuts the polygons of a file into triangles. A polygon of n corners becomes n - 2 triangles, the same ones on every
+/// machine. The object keeps its arrays from polygon to polygon, and counts the work of all polygons, so that hostile
+/// files cannot make it slow.
 class Triangulator {
  public:
   Triangulator();
@@ -28,8 +29,8 @@ class Triangulator {
   /// not, flat or nearly flat, and for outlines that touch themselves without crossing: at corners, along bridges to
   /// holes and islands, at spikes. Zero-area triangles appear only where corners coincide or are collinear. Polygons
   /// that cross themselves are covered somehow; small ones have the least area of wrong winding. Polygons without a
-  /// direction (all corners collinear, or not finite), and the rest of one that takes too long, become fans. The result
-  /// is valid until the next call. Precondition: at least 3 corners.
+  /// direction (all corners collinear, or not finite), and the rest of a polygon that takes too long, become fans. The
+  /// result is valid until the next call. Precondition: at least 3 corners.
   std::span<const glm::uvec3> operator()(std::span<const glm::vec3> corners);
 
  private:
@@ -47,7 +48,7 @@ class PolygonWriter {
                                   Mesh& mesh);
   /// Starts another mesh, whose first face is 0.
   void restart() { face_ = 0; }
-  /// The number of polygons with fewer than three corners, over all meshes.
+  /// Returns the number of polygons with fewer than three corners, over all meshes.
   [[nodiscard]] std::uint64_t skipped_count() const { return skipped_; }
 
  private:
@@ -59,7 +60,7 @@ class PolygonWriter {
   std::uint64_t skipped_ = 0;
 };
 
-/// A warning for Scene::warnings about polygons that PolygonWriter skipped.
+/// Returns a warning for Scene::warnings about polygons that PolygonWriter skipped.
 [[nodiscard]] std::string skipped_faces_warning(std::uint64_t count);
 
 /// Converts a colour of a file, sRGB from 0 to 1, to a linear one. Alpha is linear in both. NaN counts as 1.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // All files beside a model are opened here. Names inside a model are untrusted: "../../etc/passwd", absolute paths and
-// links that lead out of the folder are refused, by comparing real paths. Users write scene files for their own folders
-// of models, which they may allow.
+// links that lead out of the folder are refused, by comparing real paths. Scene files are written by users for their
+// own folders of models, so users may allow such folders.
 #include <algorithm>
 
 #include "frontmost/base.h"
@@ -19,7 +19,7 @@ bool is_within(const fs::path& path, const fs::path& folder) {
   return folder_end == folder.end();
 }
 
-/// Whether a file name leaves its folder by its text alone, on any system.
+/// Whether the text of a file name shows that it leaves its folder, on any system.
 bool leaves_folder(const std::string& reference) {
   const fs::path path(reference);
   if (path.is_absolute() || (reference.size() > 1 && reference[1] == ':')) return true;
@@ -27,7 +27,7 @@ bool leaves_folder(const std::string& reference) {
   return !normal.empty() && *normal.begin() == "..";
 }
 
-/// The start of `text`, at most `longest` bytes, cut between UTF-8 characters.
+/// Returns the start of `text`, at most `longest` bytes, cut between UTF-8 characters.
 std::string_view start_of(std::string_view text, std::size_t longest) {
   if (text.size() <= longest) return text;
   const auto continues = [&](std::size_t i) { return (static_cast<unsigned char>(text[i]) & 0xC0) == 0x80; };

@@ -25,15 +25,15 @@ struct StreamPiece {
   void clear();
 };
 
-/// One model as a stream. Pieces are fetched in order; a thread may parse its piece while others fetch the next ones.
+/// One model as a stream. Pieces are fetched in order. A thread may parse its piece while others fetch the next ones.
 class ModelStream {
  public:
   virtual ~ModelStream() = default;
 
-  /// The scene without triangles: at most one mesh, without vertices, and its instance; materials, textures, up axis,
-  /// and warnings. Warnings are complete after the last fetch().
+  /// Returns the scene without triangles. It has at most one mesh, which is empty, with its instance, and materials,
+  /// textures, up axis and warnings. Warnings are complete after the last fetch().
   [[nodiscard]] const Scene& scene() const { return scene_; }
-  /// The source, for its name: warnings in scene() lack the model's name, as readers write them.
+  /// Returns the source, which has the model's name. Warnings in scene() lack this name, as readers write them.
   [[nodiscard]] const ModelSource& source() const { return source_; }
   /// Sets the members of the scene that load() adds to a reader's scene.
   void introduce(std::string name, Axis up, SceneSource source) {
@@ -42,15 +42,15 @@ class ModelStream {
     scene_.source = std::move(source);
   }
   [[nodiscard]] bool can_rewind() const { return bytes_->can_rewind(); }
-  /// The total number of triangles, if the header or the size of the file tells it.
+  /// Returns the total number of triangles, if the header or the size of the file tells it.
   [[nodiscard]] std::optional<std::uint64_t> known_count() const { return known_count_; }
-  /// The fraction of the model that was fetched, 0 to 1.
+  /// Returns the fraction of the model that was fetched, 0 to 1.
   [[nodiscard]] virtual double fraction() const = 0;
   /// Makes the next fetch() return the first piece. Precondition: can_rewind().
   virtual void rewind() = 0;
   /// Reads the bytes of about `triangles` further triangles and stores their actual number in the piece. The number may
-  /// be zero, if a file has faces of two corners. One thread at a time. \returns false at the end of the model. \throws
-  /// Error as load() does.
+  /// be zero if a file has faces of two corners. Only one thread at a time may call this function. \returns false at
+  /// the end of the model. \throws Error as load() does.
   virtual bool fetch(StreamPiece& piece, std::uint64_t triangles) = 0;
   /// Reads as fetch() does, but only the piece's number of triangles is valid afterwards.
   virtual bool pass_over(StreamPiece& piece, std::uint64_t triangles) { return fetch(piece, triangles); }
@@ -75,9 +75,9 @@ struct StreamStart {
   std::shared_ptr<OpenedFiles> opened;
   bool has_ended = false;  ///< whether `start` is the whole file
 
-  /// The size of the file; empty for a pipe that goes on.
+  /// Returns the size of the file, or nothing for a pipe that has not ended.
   [[nodiscard]] std::optional<std::uint64_t> size() const;
-  /// The size of the file; for a pipe that goes on, a number greater than any file's size.
+  /// Returns the size of the file, or a number greater than any file's size for a pipe that has not ended.
   [[nodiscard]] std::uint64_t greatest_size() const { return size().value_or(std::uint64_t(1) << 62); }
   /// Reads on until `start` has `size` bytes or the file ends.
   void extend(std::size_t size);

@@ -3,10 +3,10 @@
 // in any order, as other programs write them.
 //
 //   COFF
-//   4 2 0                        vertices, faces, edges (nobody needs the last)
+//   4 2 0                        vertices, faces, edges (which are not used)
 //   0 0 0   1 0 0 1              a vertex; behind it with N a normal, with C a colour, with ST u v
 //   ...
-//   3 0 1 2   0.5 0.5 0.5        a face: how many corners, which, and perhaps a colour of its own
+//   3 0 1 2   0.5 0.5 0.5        a face: the number of corners, the corners, and perhaps a colour of its own
 //
 // Colours range from 0 to 1 or from 0 to 255; only the greatest value of all tells which. Counts are checked against
 // the file's length before memory is allocated.
@@ -20,7 +20,7 @@
 namespace frontmost {
 namespace {
 
-/// Colours as read, 0 to 255 or 0 to 1. The range is known after all were read.
+/// Colours as the file states them, from 0 to 255 or from 0 to 1. The range is known after all were read.
 class RawColors {
  public:
   void add(const glm::vec4& color) {
@@ -41,7 +41,7 @@ class RawColors {
     for (glm::vec4& color : colors_) color = linear_color(color / range);
     return std::move(colors_);
   }
-  /// NaN stands for opaque white, because the scale of the colours is not known yet.
+  /// Returns a value for no colour. NaN stands for opaque white, because the scale of the colours is not known yet.
   static glm::vec4 none() { return glm::vec4(std::numeric_limits<float>::quiet_NaN()); }
 
  private:
@@ -156,13 +156,13 @@ class OffReader {
           "vertices: the numbers after the coordinates are not read; C, N or ST before OFF would say what they are");
   }
 
-  /// Reads the remaining numbers of the line, at most six. \returns how many there are.
+  /// Reads the remaining numbers of the line, at most six. \returns their number.
   int rest_of_row(float (&values)[6]) {
     int count = 0;
     while (count < 6 && !text_.at_line_end() && text_.number(values[count])) ++count;
     return count;
   }
-  /// A colour of three or four components. Other counts, such as an index of a colour map, give no colour.
+  /// Returns a colour of three or four components. Other counts, such as an index of a colour map, give no colour.
   static glm::vec4 color(const float (&values)[6], int count) {
     if (count != 3 && count != 4) return RawColors::none();
     return {values[0], values[1], values[2], count == 4 ? values[3] : std::numeric_limits<float>::quiet_NaN()};

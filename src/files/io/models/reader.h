@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers, one a format, and their context beside a model's bytes: name, neighbouring files, execution. Also
-// conversions of texts of the file to names in a scene and to parts of messages.
+// The readers, one per format, and what they need beside a model's bytes: its name, the files next to it, the
+// execution. Texts of a file are turned into names in a scene and parts of messages here.
 //
 // A model is untrusted: it may name any file, and hold any bytes as a name. So files beside it are opened here only,
 // within the model's folder. Texts pass through name_of(), printable() and in_quotes(), which shorten them and remove
@@ -36,7 +36,7 @@ class OpenedFiles {
     const std::lock_guard lock(mutex_);
     paths_.insert(std::move(path));
   }
-  /// The paths in the form of SceneSource::files.
+  /// Returns the paths in the form of SceneSource::files.
   [[nodiscard]] std::vector<std::filesystem::path> paths() const { return {paths_.begin(), paths_.end()}; }
 
  private:
@@ -47,19 +47,19 @@ class OpenedFiles {
 /// A model being read.
 class ModelSource {
  public:
-  /// A model from memory or a stream: files named inside the model cannot be read.
+  /// Describes a model from memory or a stream. Files named inside the model cannot be read.
   ModelSource(std::string name, const Execution& execution) : name_(std::move(name)), execution_(execution) {}
-  /// A model from `file`, which is borrowed, at `path`. Files opened beside it are added to `opened`, unless that is
-  /// null.
+  /// Describes a model from `file`, which is borrowed, at `path`. Files opened beside it are added to `opened`, unless
+  /// that is null.
   ModelSource(std::string name, const Execution& execution, const InputFile& file, std::filesystem::path path,
               std::shared_ptr<OpenedFiles> opened = nullptr);
 
-  /// The name of the file in messages.
+  /// Returns the name of the file in messages.
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// The name without folder and suffix.
+  /// Returns the name without folder and suffix.
   [[nodiscard]] std::string stem() const;
   [[nodiscard]] const Execution& execution() const { return execution_; }
-  /// LoadOptions's decoder of images; may be null.
+  /// Returns the decoder of images from LoadOptions, which may be null.
   [[nodiscard]] const ImageDecoder* image_decoder() const { return image_decoder_; }
   void decode_images_by(const ImageDecoder* decoder) { image_decoder_ = decoder; }
   /// Allows files named inside a scene file to lie in these folders, too. \throws Error file_unreadable if one is no
@@ -69,10 +69,11 @@ class ModelSource {
   /// Whether files named inside the model can be read at all.
   [[nodiscard]] bool has_folder() const { return !path_.empty(); }
   /// Opens a file that the model names relative to its own folder, with either kind of slashes. \throws Error
-  /// file_unreadable if it is missing, no ordinary file, or outside the model's folder (by name or through links) and
-  /// the allowed folders; limit_exceeded. what() starts with the model's name and `reference`.
+  /// file_unreadable if the file is missing, is no ordinary file, or lies (by name or through links) in neither the
+  /// model's folder nor an allowed folder; limit_exceeded if the file is larger than `max_bytes`. what() starts with
+  /// the model's name and `reference`.
   [[nodiscard]] InputFile open(const std::string& reference, std::uint64_t max_bytes) const;
-  /// The real path of that file, without links. \throws Error as open() does.
+  /// Returns the real path of such a file, without links. \throws Error as open() does.
   [[nodiscard]] std::filesystem::path path_of(const std::string& reference) const;
 
   /// Tells that `part` of the model's bytes was read for the last time, which keeps memory in use low.
@@ -80,10 +81,10 @@ class ModelSource {
     if (file_ != nullptr) file_->release(part);
   }
 
-  /// The error's text without the model's name at its start, for a reader's warnings.
+  /// Returns the error's text without the model's name at its start, for a reader's warnings.
   [[nodiscard]] std::string without_name(const Error& error) const;
 
-  /// A reader's warning "place: reason" with the model's name before it, as in Scene::warnings.
+  /// Returns a reader's warning "place: reason" with the model's name before it, as in Scene::warnings.
   [[nodiscard]] std::string with_name(const std::string& warning) const { return name_ + ": " + warning; }
 
   /// Throws Error file_malformed "name: place: reason".
@@ -107,7 +108,7 @@ class ModelSource {
 class Budget {
  public:
   explicit Budget(std::uint64_t file_bytes) : left_(base + factor * file_bytes) {}
-  /// \throws Error limit_exceeded.
+  /// Takes `count` elements of `size` bytes from the budget. \throws Error limit_exceeded.
   void charge(std::uint64_t count, std::uint64_t size, const std::string& place, const ModelSource& source) {
     if (count > left_ / size)
       source.fail_limit(place, std::to_string(count) + " elements are far more than a file of this size can hold");
@@ -130,19 +131,19 @@ class Budget {
 /// and warnings, so a name of a megabyte could take gigabytes.
 inline constexpr std::size_t longest_name = 1024;
 
-/// `text` as a name: cut to `longest_name` bytes, between UTF-8 characters.
+/// Returns `text` as a name: cut to `longest_name` bytes, between UTF-8 characters.
 [[nodiscard]] std::string name_of(std::string_view text);
 
-/// A text of the file for messages: short, and escaped as printable_text() does.
+/// Returns a text of the file for messages: short, and escaped as printable_text() does.
 [[nodiscard]] std::string printable(std::string_view text);
 
-/// A word of a file for messages: in quotes, and not longer than a line.
+/// Returns a word of a file for messages: in quotes, and not longer than a line.
 [[nodiscard]] std::string in_quotes(std::string_view word);
 
-// Each reader turns bytes into a scene that frontmost::validate() accepts, keeps order and number
-// of the file's triangles (degenerate ones too), and keeps the file's units. load() validates, and adds the scene's
-// name and up axis. Bad bytes cause an Error "name: place: reason". Tolerable faults go to Scene::warnings as "place:
-// reason"; load() prepends the file's name.
+// Each reader turns bytes into a scene that frontmost::validate() accepts, keeps order and number of the file's
+// triangles (degenerate ones too), and keeps the file's units. load() validates, and adds the scene's name and up axis.
+// Bad bytes cause an Error "name: place: reason". Tolerable faults go to Scene::warnings as "place: reason"; load()
+// prepends the file's name.
 
 [[nodiscard]] Scene read_stl(Bytes bytes, const ModelSource& source);
 [[nodiscard]] Scene read_ply(Bytes bytes, const ModelSource& source);
@@ -161,35 +162,36 @@ inline constexpr std::size_t longest_name = 1024;
 /// The warning about a model without triangles, whole or streamed.
 inline constexpr const char* no_triangles_warning = "the file holds no triangles";
 
-/// The format of a file's suffix; empty if no reader has it.
+/// Returns the format that a file's suffix stands for, or nothing if there is no reader for it.
 [[nodiscard]] std::optional<ModelFormat> format_of_suffix(const std::string& path);
-/// The up axis of files in a format, unless the user says otherwise. Precondition: no scene file, which may state it.
+/// Returns the up axis of files in a format, unless the user says otherwise. Precondition: not a scene file, which may
+/// state its own.
 [[nodiscard]] Axis default_up(ModelFormat format);
-/// The format that the contents look like; empty if no reader has it.
+/// Returns the format that the contents look like, or nothing if there is no reader for it.
 [[nodiscard]] std::optional<ModelFormat> format_of_content(Bytes bytes);
 
 enum class StlEncoding : std::uint8_t { binary, ascii, neither };
 
-/// The encoding of a file of `file_size` bytes. `start` holds its first 1024 bytes, or all. The word "solid" at the
-/// start proves nothing, since many binary files have it:
+/// Returns the encoding of a file of `file_size` bytes. `start` holds its first 1024 bytes, or all. The word "solid" at
+/// the start proves nothing, since many binary files have it:
 /// - binary: the size fits the triangle count exactly, or bytes that are no text exceed the count's size;
 /// - ascii: text that starts with "solid";
 /// - neither: anything else. At least 84 bytes that are no text may be a broken binary file, but only the caller knows
 ///   whether the file's name says STL.
 [[nodiscard]] StlEncoding stl_encoding(Bytes start, std::uint64_t file_size);
-/// The encoding of a file that should be STL; binary for one that may be a broken binary file. \throws Error with the
+/// Returns the encoding of a file that should be STL: binary if it may be a broken binary file. \throws Error with the
 /// reason if it is neither.
 [[nodiscard]] StlEncoding known_stl_encoding(Bytes start, std::uint64_t file_size, const ModelSource& source);
 
 // Formats that are not read, and programs that convert them.
 
-/// Advice for a file in a format that is known but not read, with the command line that converts it. The suffix of
-/// `path` decides; empty for other suffixes.
+/// Returns advice for a file in a format that is known by its suffix but not read: the command line that converts the
+/// file. Returns nothing for other suffixes.
 [[nodiscard]] std::optional<std::string> conversion_by_suffix(const std::string& path);
-/// Advice by the first bytes, for input without a suffix such as standard input.
+/// Returns such advice by the first bytes, for input without a suffix such as standard input.
 [[nodiscard]] std::optional<std::string> conversion_by_content(Bytes bytes);
-/// Advice for the glTF file `path`, by extensions that it requires or uses. Empty if no program is known for any of
-/// them.
+/// Returns such advice for the glTF file `path`, by extensions that it requires or uses, or nothing if no program is
+/// known for any of them.
 [[nodiscard]] std::optional<std::string> conversion_of_extensions(const std::vector<std::string>& names,
                                                                   const std::string& path);
 

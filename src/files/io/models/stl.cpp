@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// STL: binary files, whole or piece by piece, and text. Stored normals are dropped, because they follow from the
-// corners.
+// Reads STL: binary files, whole or piece by piece, and text files. Stored normals are dropped, because they follow
+// from the corners.
 //
 //   byte   0                    80        84                134               184
 //          | anything, 80 bytes | count   | triangle 0      | triangle 1      | ...
@@ -56,7 +56,7 @@ std::uint16_t attribute_of(Bytes record) {
   return read_value<std::uint16_t>(record.data() + attribute_offset, Endian::little);
 }
 
-/// Colours of triangles. Two groups of programs store them in the two bytes behind each triangle, 5 bits a channel:
+/// The colours of triangles. Two groups of programs store them in the two bytes behind each triangle, 5 bits a channel:
 /// - VisCAM and SolidView: if bit 15 is set, the triangle has a colour, with blue in the lowest bits;
 /// - Magics: the header has "COLOR=" and the colour of the whole part. If bit 15 is clear, a triangle has its own
 ///   colour, with red in the lowest bits. MeshLab writes such files with bit 15 set.
@@ -78,7 +78,8 @@ class StlColors {
     for (; records.size() >= record_size; records = records.subspan(record_size)) bits |= attribute_of(records);
     return (bits & (is_own_by_bit_ ? 0x8000 : 0xFFFF)) != 0;
   }
-  /// The colour of a triangle, linear and opaque, because some writers leave alpha open. White if it has none.
+  /// Returns the colour of a triangle, linear and opaque, because some writers leave alpha open. A triangle without a
+  /// colour has that of the part, or white.
   [[nodiscard]] glm::vec4 of(Bytes record) const {
     const std::uint16_t bits = attribute_of(record);
     if (((bits & 0x8000) != 0) != is_own_by_bit_) return part_;
@@ -116,7 +117,7 @@ void color_records(Bytes records, const StlColors& colors, std::size_t first, Me
   }
 }
 
-/// The count in the header, which cannot be trusted.
+/// Returns the count in the header, which cannot be trusted.
 std::uint64_t promised_count(Bytes prelude) {
   return read_value<std::uint32_t>(prelude.data() + header_size, Endian::little);
 }
@@ -135,8 +136,8 @@ std::string rest_warning(std::uint64_t count, std::uint64_t rest) {
               "the file ends here, but its header promises " + std::to_string(promised) + " triangles");
 }
 
-/// The number of triangles to read, by comparing the header with the size. Writers that cannot seek back leave 0 or
-/// 0xFFFFFFFF as the count; then the size decides, if it fits whole records. Oddities cause warnings.
+/// Returns the number of triangles to read, after comparing the header with the size. Writers that cannot seek back
+/// leave 0 or 0xFFFFFFFF as the count; then the size decides, if it fits whole records. Oddities cause warnings.
 std::uint64_t checked_count(Bytes prelude, std::uint64_t file_size, const ModelSource& source,
                             std::vector<std::string>& warnings) {
   const std::uint64_t promised = promised_count(prelude);
@@ -150,7 +151,7 @@ std::uint64_t checked_count(Bytes prelude, std::uint64_t file_size, const ModelS
   return promised;
 }
 
-/// The solid's name, if the header is text. Exporters often put "solid NAME" there.
+/// Returns the solid's name, if the header is text. Exporters often put "solid NAME" there.
 std::string header_name(Bytes prelude) {
   std::string name(reinterpret_cast<const char*>(prelude.data()), header_size);
   name.resize(std::min(name.find('\0'), name.size()));
@@ -165,7 +166,7 @@ std::string header_name(Bytes prelude) {
 /// Appends the triangles of whole records, with colours unless `colors` is null.
 void append_records(Bytes records, const StlColors* colors, Mesh& mesh) {
   const std::size_t first = mesh.triangles.size(), count = records.size() / record_size;
-  // Blocks are small enough that growing (which writes zeros) and filling meet in the cache.
+  // A block is so small that the zeros written by resize() are still in the cache when they are overwritten.
   constexpr std::size_t block = 8192;
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t end = std::min(count, begin + block);
@@ -219,7 +220,8 @@ Scene read_binary_stl(Bytes bytes, const ModelSource& source) {
   return scene;
 }
 
-/// Text: each solid becomes a mesh. Words may be in any case and anywhere on a line, as in files from the wild.
+/// Reads text, in which each solid becomes a mesh. Words may be in any case and anywhere on a line, as in files from
+/// the wild.
 ///
 ///   solid NAME
 ///     facet normal nx ny nz
@@ -311,9 +313,9 @@ class AsciiStl {
 
 constexpr std::uint64_t color_window = 1000;  // stated in a warning
 
-/// A stream of records. A record holds its whole triangle, so a piece is a number of records and depends on no earlier
-/// ones. The header or the size tells their number; for a pipe with an open header, only its end does. The first piece
-/// must know whether triangles have colours, so the first thousand records decide.
+/// A stream of records. A record holds its whole triangle, so a piece is some records and depends on no earlier piece.
+/// The header or the size tells the number of records; if the header of a pipe leaves it open, only the end of the pipe
+/// does. Whether triangles have colours must be known at the first piece, so the first thousand records decide.
 class StlStream final : public ModelStream {
  public:
   StlStream(StreamStart start, std::optional<std::uint64_t> size, const ModelSource& source)
@@ -384,7 +386,7 @@ class StlStream final : public ModelStream {
   }
 
  private:
-  /// The best origin. The first piece suffices if the model lies near zero.
+  /// Returns the best origin. The first piece suffices if the model lies near zero.
   glm::dvec3 fitting_origin() {
     constexpr std::uint64_t triangles_at_once = 4096;
     OriginSearch search;
@@ -398,7 +400,7 @@ class StlStream final : public ModelStream {
     return search.origin();
   }
 
-  /// Reports a pipe that ends early; the size of a file would have told this before.
+  /// Reports a pipe that ends early. The size of a file would have told this before.
   void end_early(std::size_t rest) {
     if (is_open_ && rest != 0)
       source_.fail("triangle " + std::to_string(next_),

@@ -19,7 +19,7 @@ namespace {
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
-/// If `word`, in any case, is at `at` and not part of a longer word, returns its end, else null.
+/// Returns the end of `word`, in any case, if it is at `at` and not part of a longer word; otherwise null.
 const char* match(const char* at, const char* end, std::string_view word) {
   if (std::size_t(end - at) < word.size()) return nullptr;
   for (std::size_t i = 0; i < word.size(); ++i)
@@ -61,7 +61,7 @@ const char* parse_slowly(const char* at, const char* end, T& value) {
   if (at != end && (*at == '-' || *at == '+')) ++at;
   T magnitude = 0;
   const char* after = nullptr;
-  // fast_float would take a second sign, and other spellings of nan and inf.
+  // fast_float would accept a second sign, and other spellings of nan and inf.
   if (at != end && (is_digit(*at) || *at == '.')) {
     const auto [last, error] = fast_float::from_chars(at, end, magnitude);
     if (error == std::errc::invalid_argument) return nullptr;

@@ -26,7 +26,8 @@ namespace frontmost {
 // slow path.
 
 namespace detail {
-/// The general case: many digits, large exponents, nan and inf in every spelling. Returns null if there is no number.
+/// Reads numbers of the general form: many digits, large exponents, nan and inf in every spelling. Returns null if
+/// there is no number.
 const char* parse_float_slowly(const char* at, const char* end, float& value);
 const char* parse_double_slowly(const char* at, const char* end, double& value);
 
@@ -35,8 +36,8 @@ inline constexpr double powers_of_ten[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1
 
 inline bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// Whether rounding a correctly rounded double to float is correct. False if the double is half way between two floats,
-/// because digits that it lost would decide, and where floats get sparser (subnormal) or end.
+/// Whether a correctly rounded double can be rounded to the correct float. False if the double is half way between two
+/// floats, because the digits that it lost would decide. False also where floats get sparser (subnormal) or end.
 inline bool rounds_once(double magnitude) {
   std::uint64_t bits;
   std::memcpy(&bits, &magnitude, sizeof bits);
@@ -45,7 +46,7 @@ inline bool rounds_once(double magnitude) {
 }
 
 /// Reads [+-]digits[.digits] with at most 15 digits. \returns the first character after the number; null if there is no
-/// number, or if it is longer or goes on.
+/// number, or if it has more digits or goes on, for example with an exponent.
 inline const char* parse_short(const char* at, const char* end, double& value) {
   const char* p = at;
   const bool negative = p != end && *p == '-';
@@ -86,7 +87,7 @@ inline const char* parse_float(const char* at, const char* end, float& value) {
   return after;
 }
 
-/// Reads a number as the nearest double; otherwise like parse_float().
+/// Reads a number as the nearest double. Otherwise like parse_float().
 inline const char* parse_double(const char* at, const char* end, double& exact) {
   const char* const after = detail::parse_short(at, end, exact);
   return after != nullptr ? after : detail::parse_double_slowly(at, end, exact);
@@ -99,7 +100,7 @@ inline const char* parse_both(const char* at, const char* end, float& value, dou
   return detail::parse_float_slowly(at, end, value);
 }
 
-/// The value of a hexadecimal digit; -1 for other characters.
+/// Returns the value of a hexadecimal digit, or -1 for other characters.
 inline int hex_digit(char c) {
   if (detail::is_digit(c)) return c - '0';
   const char lower = char(c | 0x20);
@@ -119,8 +120,8 @@ inline const char* parse_integer(const char* at, const char* end, std::int64_t& 
   return p;
 }
 
-/// Lines end with \n, \r\n or \r. If `comments` says so, a word that starts with '#' ends its line. A backslash at the
-/// end of a line joins it with the next one.
+/// Reads a text word by word. Lines end with \n, \r\n or \r. If `comments` says so, a word that starts with '#' ends
+/// its line. A backslash at the end of a line joins it with the next one.
 class TextScanner {
  public:
   enum class Comments : bool { none, hash };
@@ -158,14 +159,14 @@ class TextScanner {
     return true;
   }
 
-  /// The next word of this line; empty at its end.
+  /// Takes the next word of this line. \returns the word, which is empty at the end of the line.
   std::string_view word() {
     if (at_line_end()) return {};
     const char* const start = at_;
     while (at_ != end_ && !is_space(*at_)) ++at_;
     return {start, std::size_t(at_ - start)};
   }
-  /// The rest of the line, with comments, without blanks around it.
+  /// Takes the rest of the line, with comments. \returns the rest without blanks around it.
   std::string_view rest() {
     skip_blanks();
     const char* const start = at_;

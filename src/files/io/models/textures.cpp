@@ -108,7 +108,7 @@ std::optional<Texture> TextureFiles::read(const std::string& reference, const st
     const InputFile file = source_.open(reference, max_image_file_bytes);
     const std::string name = source_.name() + ": " + printable(reference);
     const glm::ivec2 size = texture_size(file.bytes(), name, source_.image_decoder());
-    // Each file adds to the budget once: it may be part of many textures and have many names.
+    // Each file adds to the budget once, although it may be part of many textures and have many names.
     if (files_.insert(source_.path_of(reference)).second) budget_.add_file(file.bytes().size());
     if (!budget_.take(std::uint64_t(size.x) * std::uint64_t(size.y)))
       throw Error(ErrorCode::limit_exceeded, name + too_many_pixels);
@@ -121,8 +121,8 @@ std::optional<Texture> TextureFiles::read(const std::string& reference, const st
   }
 }
 
-/// Gives the texture, white if there is none, the alpha of another image. Width and height are the greater ones of
-/// both. \returns false, and changes nothing, if there are too many pixels.
+/// Gives the texture the alpha of another image. If there is no texture, it becomes white. Width and height become the
+/// greater ones of the two images. \returns false, and changes nothing, if there are too many pixels.
 bool TextureFiles::add_alpha(std::optional<Texture>& texture, Texture& alpha) {
   glm::ivec2 size(alpha.width, alpha.height);
   if (texture) size = glm::max(size, glm::ivec2(texture->width, texture->height));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Textures that a model names as files, for colours and for alpha. A file that cannot be read causes a warning, no
+// Textures that a model names as files, for colours and for alpha. A file that cannot be read causes a warning, not an
 // error. Also adapts materials whose texture cannot be used.
 #pragma once
 
@@ -15,12 +15,12 @@
 
 namespace frontmost {
 
-/// Budget of pixels. A file of 32 kB can hold an image of a gigabyte in one colour, but real images have some 1 to 30
-/// pixels a byte. Each byte of an image file allows 64 pixels; 8192 x 8192 more are free.
+/// A budget of pixels. A file of 32 kB can hold an image of a gigabyte in one colour, but real images have some 1 to 30
+/// pixels a byte. Each byte of an image file allows 64 pixels, and 8192 x 8192 more are free.
 class PixelBudget {
  public:
   void add_file(std::uint64_t byte_count) { left_ += pixels_per_byte * byte_count; }
-  /// \returns false, without taking any pixels, if they exceed the budget.
+  /// Takes pixels from the budget. \returns false, without taking any, if they exceed the budget.
   [[nodiscard]] bool take(std::uint64_t pixels) {
     if (pixels > left_) return false;
     left_ -= pixels;
@@ -35,7 +35,7 @@ class PixelBudget {
 /// The files of a texture. An empty name means that there is no such file.
 struct TextureParts {
   std::string color = {};
-  std::string alpha = {};  ///< if equal to `color`: the alpha of its own pixels
+  std::string alpha = {};  ///< if equal to `color`, the alpha of that file's own pixels
   Texture::Wrap wrap = Texture::Wrap::repeat;
 };
 
@@ -50,7 +50,7 @@ class TextureFiles {
  public:
   TextureFiles(const ModelSource& source, Scene& scene) : source_(source), scene_(scene) {}
 
-  /// The number of a texture in the scene. Files that cannot be read are left out, with a warning at `place`.
+  /// Returns the number of a texture in the scene. Files that cannot be read are left out, with a warning at `place`.
   MadeTexture get(const TextureParts& parts, const std::string& place);
 
  private:
@@ -66,8 +66,8 @@ class TextureFiles {
   std::map<std::tuple<std::string, std::string, Texture::Wrap>, MadeTexture> known_;
 };
 
-// A factor is the greatest value of its texture, not a mean. If the texture says which parts glow or are metal, the
-// factor alone would make all parts so.
+// A factor is the greatest value of its texture, not a mean. If a texture says which parts glow or are metal, the
+// factor without the texture would make all parts so.
 
 /// Makes the material not glow. `who` names the material in the warning.
 void lose_emissive_texture(Material& material, const std::string& who, std::vector<std::string>& warnings);

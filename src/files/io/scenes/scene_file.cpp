@@ -2,7 +2,7 @@
 // Parses the text of scene files, and of files that assign categories to the objects of a scene. Names of categories
 // and materials become numbers here, so that only models are left to be found.
 //
-// Objects have a pose, by rows as in pose files of cameras, or the separate parts that glTF and data sets use:
+// The pose of an object is given by rows, as in pose files of cameras, or by the parts that glTF and data sets use:
 //
 //   "pose": 16 or 12 numbers, or rows of four, or the name of a file that holds them
 //   "translation": 3 numbers    "rotation": 4 (a quaternion x, y, z, w) or 9 (a matrix by rows)    "scale": 1 or 3
@@ -123,7 +123,7 @@ Material read_look(const JsonValue& json, const std::string& name) {
   return material;
 }
 
-/// Limit of numbers: beyond it, placed vertices do not fit into floats.
+/// Greatest number: beyond it, placed vertices do not fit into floats.
 constexpr double largest = 1e30;
 
 void append_number(const JsonValue& value, std::vector<double>& numbers) {
@@ -132,7 +132,7 @@ void append_number(const JsonValue& value, std::vector<double>& numbers) {
   numbers.push_back(number);
 }
 
-/// The numbers of a list, or of a list of rows.
+/// Returns the numbers of a list, or of a list of rows.
 std::vector<double> numbers_in(const JsonValue& value) {
   constexpr std::size_t most = 16;
   std::vector<double> numbers;
@@ -149,7 +149,7 @@ std::vector<double> numbers_in(const JsonValue& value) {
   return numbers;
 }
 
-/// The numbers in the file `name`, with any of the separators that pose files of cameras allow.
+/// Returns the numbers in the file `name`, with any of the separators that pose files of cameras allow.
 std::vector<double> numbers_in_file(const JsonValue& name) {
   constexpr std::uint64_t most_bytes = 1 << 16;
   constexpr std::string_view separators = " \t\r\n,;[]()";
@@ -202,7 +202,8 @@ glm::dmat4 read_matrix(const JsonValue& object, const JsonValue& value) {
   object.require("pose_convention").fail("must be model-to-world or world-to-model");
 }
 
-/// A rotation by nine numbers, orthonormal within the rounding errors of data sets.
+/// Returns the rotation that nine numbers give by rows. They must be orthonormal within the rounding errors of data
+/// sets.
 glm::dmat4 rotation_by_rows(const JsonValue& place, const std::vector<double>& numbers) {
   constexpr double tolerance = 1e-4;
   glm::dmat3 rotation;
@@ -226,7 +227,8 @@ glm::dmat4 read_rotation(const JsonValue& value) {
   return gltf::compose(glm::dvec3(0), quaternion, glm::dvec3(1));
 }
 
-/// The pose of an object by "pose", or by "translation", "rotation" and "scale"; the identity if all are absent.
+/// Returns the pose of an object by "pose", or by "translation", "rotation" and "scale", or the identity if all are
+/// absent.
 glm::dmat4 read_pose(const JsonValue& object) {
   if (const std::optional<JsonValue> pose = object.find("pose")) {
     for (const char* const other : {"translation", "rotation", "scale"})
@@ -262,7 +264,7 @@ std::string read_name(const JsonValue& value) {
   return name_of(name);
 }
 
-/// \throws Error limit_exceeded if the list has more elements than a scene may have objects.
+/// Checks the length of a list. \throws Error limit_exceeded if it has more elements than a scene may have objects.
 void check_count(const JsonValue& array) {
   if (array.size() > max_objects)
     array.source().fail_limit(array.place(),
@@ -296,7 +298,7 @@ class CategoryNames {
     }
   }
 
-  /// The index of a category. \throws Error file_malformed if the file has a list that lacks it.
+  /// Returns the index of a category. \throws Error file_malformed if the file has a list that lacks it.
   std::uint32_t get(const JsonValue& value) {
     const std::string name = read_name(value);
     const auto [found, is_new] = numbers_.emplace(name, std::uint32_t(categories_.size()));
@@ -307,7 +309,7 @@ class CategoryNames {
 
  private:
   std::vector<Category>& categories_;
-  std::map<std::string, std::uint32_t> numbers_;  ///< in the list
+  std::map<std::string, std::uint32_t> numbers_;  ///< index in `categories_`, by name
   bool is_listed_ = false;
 };
 

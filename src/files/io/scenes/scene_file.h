@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Contents of a scene file before any model is read. The file is JSON that places models:
+// The contents of a scene file before any model is read. The file is JSON that places models:
 //
 //   {"up": "z", "metres_per_unit": 0.001,
 //    "objects": [{"model": "cup.ply", "name": "left cup", "category": "cup", "pose": [16 numbers], "material": "red"},
@@ -17,7 +17,7 @@ namespace frontmost {
 
 /// Replaces materials of a model by materials of SceneFile::materials.
 struct Replacement {
-  std::uint32_t of_all = no_index;             ///< no_index: only the materials in `named` are replaced
+  std::uint32_t of_all = no_index;             ///< replaces all materials; no_index: only those in `named` are replaced
   std::map<std::string, std::uint32_t> named;  ///< by the names of the model's materials
   // Compared without <=>, which std::map lacks in some standard libraries (WebAssembly).
   friend bool operator<(const Replacement& a, const Replacement& b) {
@@ -35,7 +35,7 @@ struct PlacedModel {
   std::optional<Axis> up;                 ///< up axis of the model, which is turned to that of the scene
   std::optional<double> metres_per_unit;  ///< unit of the model; overrides the model's file
   Replacement replacement;
-  bool has_parts = false;  ///< the model's objects stay separate
+  bool has_parts = false;  ///< whether the model's objects stay separate
 };
 
 struct SceneFile {
@@ -46,12 +46,12 @@ struct SceneFile {
   std::vector<PlacedModel> objects;
 };
 
-/// \throws Error file_malformed or limit_exceeded: "name: place: reason".
+/// Parses the text of a scene file. \throws Error file_malformed or limit_exceeded: "name: place: reason".
 [[nodiscard]] SceneFile parse_scene_file(std::string_view text, const ModelSource& source);
 
-/// All objects of a model as one mesh, in their order, in the model's space: relative to its origin, rounded to floats.
-/// If some meshes have normals, colours or texture coordinates, the others get the values that count as missing.
-/// Preconditions: the model is valid and has no curved meshes. O(triangles).
+/// Returns all objects of a model as one mesh, in their order, in the model's space: relative to its origin, rounded to
+/// floats. If some meshes have normals, colours or texture coordinates, the others get the values that count as
+/// missing. Preconditions: the model is valid and has no curved meshes. O(triangles).
 [[nodiscard]] Mesh one_mesh(const Scene& model);
 
 }  // namespace frontmost

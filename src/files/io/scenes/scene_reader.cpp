@@ -78,7 +78,7 @@ Attribute<glm::vec2> joined_texcoords(const std::vector<PartOfModel>& parts, std
       [](const glm::vec2& value, const PartOfModel&) { return value; });
 }
 
-/// One material a triangle, or a single one if all are the same.
+/// Returns one material per triangle, or a single one if all are the same.
 std::vector<std::uint32_t> joined_materials(const std::vector<PartOfModel>& parts) {
   std::vector<std::uint32_t> ids;
   for (const PartOfModel& part : parts)
@@ -103,7 +103,8 @@ std::vector<std::uint32_t> joined_faces(const std::vector<PartOfModel>& parts) {
   return ids;
 }
 
-/// The smallest rotation that takes one axis to another. A half turn is about x, or about y if both axes lie along x.
+/// Returns the smallest rotation that turns one axis to another. A half turn is about x, or about y if both axes lie
+/// along x.
 glm::dmat4 turn_between(Axis from, Axis to) {
   const glm::dvec3 a = direction(from), b = direction(to), c = glm::cross(a, b);
   if (a == b) return glm::dmat4(1.0);
@@ -113,7 +114,7 @@ glm::dmat4 turn_between(Axis from, Axis to) {
     for (int i = 0; i < 3; ++i) half[i][i] = about[i] == 0 ? -1 : 1;
     return half;
   }
-  // The rotation takes a to b and b to -a, and keeps c.
+  // The rotation turns a to b and b to -a, and keeps c.
   return glm::dmat4(glm::outerProduct(b, a) - glm::outerProduct(a, b) + glm::outerProduct(c, c));
 }
 
@@ -122,7 +123,7 @@ std::uint64_t bytes_of(const Attribute<T>& attribute) {
   return attribute.values.size() * sizeof(T) + attribute.triangles.size() * sizeof(glm::uvec3);
 }
 
-/// Memory of a copy of a mesh, with room for the corner indices that one_mesh() may add to attributes.
+/// Returns the memory of a copy of a mesh, with room for the corner indices that one_mesh() may add to attributes.
 std::uint64_t bytes_of(const Mesh& mesh) {
   constexpr std::uint64_t corner_lists = 2 + max_texcoord_sets;
   std::uint64_t bytes = mesh.positions.size() * sizeof(glm::vec3) + bytes_of(mesh.normals) + bytes_of(mesh.texcoords) +
@@ -131,7 +132,7 @@ std::uint64_t bytes_of(const Mesh& mesh) {
   return bytes;
 }
 
-/// Total size of the files that a model was read from.
+/// Returns the total size of the files that a model was read from.
 std::uint64_t file_bytes(const SceneSource& source) {
   std::uint64_t bytes = 0;
   for (const std::filesystem::path& path : source.files) {
@@ -149,7 +150,7 @@ struct RigidPlace {
   double growth;  ///< factor of lengths along the direction of view or of the light
 };
 
-/// Precondition: the transform is not singular.
+/// Returns the place that a transform gives. Precondition: the transform is not singular.
 RigidPlace rigid_place(const glm::dmat4& placed) {
   const glm::dvec3 back(placed[2]), right = glm::cross(glm::dvec3(placed[1]), back);
   const double length = glm::length(back);
@@ -157,8 +158,8 @@ RigidPlace rigid_place(const glm::dmat4& placed) {
   return {glm::dmat4(glm::dvec4(x, 0), glm::dvec4(glm::cross(z, x), 0), glm::dvec4(z, 0), placed[3]), length};
 }
 
-/// A camera of the model in the scene. Lengths (planes, the height of a parallel projection) are scaled by the
-/// transform's factor along the viewing direction.
+/// Returns a camera of the model, placed in the scene. Lengths (planes, the height of a parallel projection) are scaled
+/// by the transform's factor along the viewing direction.
 Camera transformed(Camera camera, const glm::dmat4& scene_from_model) {
   const RigidPlace place = rigid_place(scene_from_model * camera.world_from_eye);
   camera.world_from_eye = place.world_from_thing;
@@ -168,7 +169,7 @@ Camera transformed(Camera camera, const glm::dmat4& scene_from_model) {
   return camera;
 }
 
-/// A light of the model in the scene. An object that is scaled with the light is as bright as before.
+/// Returns a light of the model, placed in the scene. An object that is scaled with the light is as bright as before.
 Light transformed(Light light, const glm::dmat4& scene_from_model) {
   const RigidPlace place = rigid_place(scene_from_model * light.world_from_light);
   light.world_from_light = place.world_from_thing;
@@ -178,7 +179,7 @@ Light transformed(Light light, const glm::dmat4& scene_from_model) {
   return light;
 }
 
-/// One model as read from its file, and those of its meshes that are in the scene already.
+/// A model as read from its file, and those of its meshes that are in the scene already.
 class PlacedMeshes {
  public:
   /// Moves the model's materials and textures to the scene.
@@ -197,8 +198,8 @@ class PlacedMeshes {
 
   [[nodiscard]] const Scene& model() const { return model_; }
 
-  /// The objects of the scene that one object of the scene file makes. `scene_from_model` applies to the model's
-  /// coordinates.
+  /// Returns the objects of the scene that one object of the scene file makes. `scene_from_model` applies to the
+  /// model's coordinates.
   std::vector<Instance> place(const PlacedModel& object, const glm::dmat4& scene_from_model) {
     const bool is_one = !object.has_parts && model_.instances.size() > 1;
     const std::vector<std::uint32_t>& meshes = meshes_of(object, is_one);
@@ -224,7 +225,7 @@ class PlacedMeshes {
   }
 
  private:
-  /// Meshes by the model's own numbers, or a single one if the objects are joined.
+  /// Returns meshes by the model's own numbers, or a single one if the objects are joined.
   const std::vector<std::uint32_t>& meshes_of(const PlacedModel& object, bool is_one) {
     const auto [found, is_new] = known_.emplace(std::pair(is_one, object.replacement), std::vector<std::uint32_t>());
     if (!is_new) return found->second;
@@ -295,8 +296,8 @@ class SceneReader {
   }
 
  private:
-  /// Groups the objects by their model, as told by the path of its file. Models are in the order of their first
-  /// objects.
+  /// Groups the objects by their model, which is identified by the path of its file. Models are in the order of their
+  /// first objects.
   void find_models() {
     std::map<std::string, std::size_t> by_reference, by_path;
     for (std::size_t i = 0; i < file_.objects.size(); ++i) {
@@ -345,7 +346,8 @@ class SceneReader {
     }
   }
 
-  /// The transform from the model's world space, which is relative to its origin, to the coordinates of the scene file.
+  /// Returns the transform from the model's world space, which is relative to its origin, to the coordinates of the
+  /// scene file.
   [[nodiscard]] glm::dmat4 place_of(const PlacedModel& object, const Scene& model) const {
     glm::dmat4 from_origin(1.0), scaled(1.0);
     from_origin[3] = glm::dvec4(model.origin, 1);

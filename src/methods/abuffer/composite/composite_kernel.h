@@ -19,8 +19,10 @@ struct GroupFragments {
   Buffer<std::uint32_t> mask_low, mask_high;  ///< all samples if there is no fragment
   Buffer<std::uint32_t> triangle;             ///< number in LocalTriangles
   Buffer<std::uint32_t> number;               ///< in Arrived
-  Buffer<float> nearest, farthest, behind;    ///< range of the fragment's keys; nearest key of all fragments behind
-  Buffer<std::int32_t> reach;                 ///< last slot that a fragment up to this one may change places with
+  Buffer<float> nearest, farthest, behind;    ///< nearest and farthest key of the fragment; nearest key of all
+                                              ///< fragments behind
+  Buffer<std::int32_t> reach;                 ///< the fragment's slot, or the last slot beyond the run so far that it
+                                              ///< may change places with
 
   /// Makes room for lists of so many slots. Loses the contents.
   void reserve(std::size_t slots) {
@@ -39,9 +41,10 @@ struct CompositeInput {
   Isa isa;
 };
 
-/// The pixels of a rectangle, row by row: premultiplied means over the sub-samples. At every sub-sample the order is
-/// that of the keys there, the lower id first if keys are equal. `fragments` belong to the rectangle. `colors`, linear
-/// with straight alpha of 0 to 1, are numbered as in Arrived.
+/// Returns the pixels of a rectangle, row by row: premultiplied means over the sub-samples. At every sub-sample
+/// fragments are in the order of their keys there, the lower id first if keys are equal. `fragments` holds the
+/// fragments of the rectangle. `colors` are linear with straight alpha of 0 to 1, and are indexed by the numbers in
+/// Arrived.
 [[nodiscard]] std::vector<glm::vec4> composite_tile(const CompositeInput& input, const Rectangle& pixels,
                                                     const GatherScratch& fragments,
                                                     const std::vector<glm::vec4>& colors);

@@ -4,9 +4,9 @@
 //
 // Lists are in the order of keys at the centre. Two fragments can have another order elsewhere in the pixel only if
 // they share a sub-sample, the ranges of their keys overlap, and the difference of their slopes can make up for the
-// difference of their keys at the centre. A fragment between two that may change places is in their run. So partners
-// are only looked for beyond the end of the run so far. Long lists have a limit to the pairs that are compared. Beyond
-// the limit ranges alone decide, which makes the runs longer and the picture no worse.
+// difference of their keys at the centre. If two fragments may change places, they and all fragments between them form
+// a run. So partners are looked for only beyond the end of the run so far. In long lists, the number of compared pairs
+// is limited. Beyond the limit, the ranges of keys alone decide, which makes the runs longer and the picture no worse.
 
 // Included once for every target.
 #if defined(FRONTMOST_ABUFFER_CONFLICTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -25,7 +25,7 @@ namespace frontmost::abuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Sixteen words of a slot, split: 64 bits each, the key above the number.
+/// The halves of some words of a slot: the complements of numbers (`low`), and the bits of keys (`high`).
 struct SlotHalves {
   VU low, high;
 };
@@ -40,7 +40,7 @@ HWY_INLINE SlotHalves HalvesOf(const std::uint64_t* words) {
 #endif
 }
 
-/// kWide: there are more than 32 sub-samples.
+/// Lays out a group and finds conflicts. kWide is true if there are more than 32 sub-samples.
 template <bool kWide>
 class GroupReader {
  public:
@@ -49,7 +49,7 @@ class GroupReader {
       : s_(scratch), g_(fragments), all_(all) {}
 
   /// Fills GroupFragments. \returns the pixels, as bits, in which fragments may change places: none at a single sample.
-  /// In these pixels `reach` holds, for every fragment, the last slot that a fragment up to it may change places with.
+  /// `reach` is valid in these pixels only.
   HWY_NOINLINE std::uint64_t Read(std::size_t group) {
     group_ = group;
     length_ = s_.length(group);
@@ -65,8 +65,8 @@ class GroupReader {
   /// Lists longer than kLong are searched pixel by pixel, with at most kMostPairs pairs per fragment.
   static constexpr std::size_t kLong = 256, kMostPairs = 64;
 
-  /// Reads slots from the last to the first. \returns, as bits, the slots whose key ranges overlap those of slots
-  /// behind; the last bit stands for all slots from there.
+  /// Reads slots from the last to the first. \returns, as bits, the slots whose ranges of keys overlap those of later
+  /// slots. The bit kLastBit stands for all slots from there on.
   HWY_INLINE std::uint64_t ReadLanes(std::size_t lane) {
     const DI d;
     const DU du;
@@ -120,7 +120,7 @@ class GroupReader {
       for (std::size_t i = kLastBit + 1; i + 1 < length_; ++i) FindPairsOf(i, lane);
   }
 
-  /// Finds pairs of slot i with slots beyond the last that a slot up to i may change places with.
+  /// Finds the slots beyond the end of the run so far that slot i may change places with.
   HWY_INLINE void FindPairsOf(std::size_t i, std::size_t lane) {
     const DF d;
     const DU du;
@@ -156,8 +156,8 @@ class GroupReader {
     in_conflict_ |= std::uint64_t(1) << pixel;
   }
 
-  /// \returns false if there are too many pairs. Pairs are counted by pixel, so the result does not depend on the width
-  /// of vectors.
+  /// Finds the pairs of a pixel with a long list. \returns false if there are too many pairs. Pairs are counted by
+  /// pixel, so the result does not depend on the width of vectors.
   [[nodiscard]] bool FindLongPairs(std::size_t pixel) {
     std::size_t pairs = length_ * kMostPairs;
     for (std::size_t i = 0, end = 0; i < length_; ++i) {
@@ -179,7 +179,7 @@ class GroupReader {
     return (g_.mask_low[a] & g_.mask_low[b]) != 0 || (kWide && (g_.mask_high[a] & g_.mask_high[b]) != 0);
   }
 
-  /// Finds the runs of overlapping ranges.
+  /// Finds runs by the overlaps of key ranges alone.
   void FindOverlaps(std::size_t pixel) {
     float farthest = std::numeric_limits<float>::max();
     for (std::size_t i = 0; i + 1 < length_; ++i) {
@@ -213,7 +213,7 @@ class GroupReader {
   HWY_ALIGN_MAX std::int32_t run_end_[kGroup] = {};  ///< by pixel, last slot of the current run
 };
 
-/// The sum of all lanes by halves: lanes half the count apart are added first.
+/// Returns the sum of all lanes by halves: lanes half the count apart are added first.
 template <class D>
 HWY_INLINE float AddHalves(D /*tag*/, hn::Vec<D> v) {
 #if HWY_TARGET == HWY_SCALAR
@@ -233,9 +233,9 @@ HWY_INLINE float AddHalves(D /*tag*/, hn::Vec<D> v) {
 /// their sums and the order of adding colours are those of GroupCompositor. So the bits are the same if fragments do
 /// not change places after all.
 ///
-///    list        a   b   c   d            b and c cross in the pixel: they are a run, and each sub-sample sorts the
-///    run run             [b   c]              by its own keys. Fragments before and behind a run have one order
-///    everywhere. samples     b c | c b | b c ...
+///    list       a   b   c   d        b and c cross in the pixel, so they are a run: each sub-sample sorts them by its
+///    run            [b   c]          own keys. Fragments before and behind a run have one order everywhere.
+///    samples    b c | c b | b c
 template <int kSamples>
 class PixelCompositor {
  public:
@@ -243,7 +243,7 @@ class PixelCompositor {
                   const glm::vec4* colors)
       : pattern_(input.pattern), s_(scratch), g_(fragments), table_(colors), opacity_(input.opacity) {}
 
-  /// The pixel, premultiplied. Precondition: GroupFragments belong to the group, with `reach` for this pixel.
+  /// Returns the pixel, premultiplied. Precondition: GroupFragments holds the group, with `reach` for this pixel.
   HWY_NOINLINE glm::vec4 Composite(std::size_t group, std::size_t pixel) {
     for (VF& left : left_) left = hn::Set(DF(), 1.0f);
     color_ = glm::vec3(0);
@@ -274,7 +274,7 @@ class PixelCompositor {
   static constexpr std::size_t kLanes = kMaxLanes < kSamples ? kMaxLanes : kSamples;
   static constexpr std::size_t kVectors = kSamples / kLanes;
   static constexpr float kScale = 1.0f / kSamples;
-  /// Runs of up to so many fragments compare each fragment with each.
+  /// In runs of up to so many fragments, each fragment is compared with all others.
   static constexpr std::size_t kMostInRun = 16;
 
   [[nodiscard]] HWY_INLINE std::size_t At(std::size_t slot) const { return slot * kGroup + pixel_; }
@@ -316,7 +316,8 @@ class PixelCompositor {
     AddWeighted(color, shown);
   }
 
-  /// Bits of the keys at a vector of sub-samples; -1, behind all keys, if the fragment does not cover the sub-sample.
+  /// Returns the bits of the keys at a vector of sub-samples; -1, behind all keys, if the fragment does not cover the
+  /// sub-sample.
   [[nodiscard]] HWY_INLINE VI KeysAt(std::size_t slot, std::size_t v) const {
     const DI d;
     const DF df;
@@ -339,7 +340,7 @@ class PixelCompositor {
     return hn::IfThenElse(covered, hn::BitCast(d, key), hn::Set(d, -1));
   }
 
-  /// Weights every fragment by the fragments before it at each sub-sample: nothing needs to be sorted.
+  /// Adds a run without sorting it: weights every fragment by the fragments before it at each sub-sample.
   void AddShortRun(std::size_t begin, std::size_t end) {
     const DI d;
     const DF df;
@@ -371,7 +372,7 @@ class PixelCompositor {
       }
   }
 
-  /// Sorts the run at every sub-sample.
+  /// Adds a run that is sorted at every sub-sample.
   void AddLongRun(std::size_t begin, std::size_t end) {
     const DF d;
     HWY_ALIGN_MAX float left[kSamples + kMaxLanes];
@@ -384,7 +385,7 @@ class PixelCompositor {
       for (std::size_t slot = begin; slot < end; ++slot)
         if (MaskAt(slot) >> sample & 1)
           order_.push_back({-s_.triangles.key_at(g_.triangle[At(slot)], x, y), IdAt(slot), slot});
-      // The order is mostly that of the list: copies of one triangle stay as they are.
+      // The order is mostly that of the list, for example in copies of one triangle, so sorting is seldom needed.
       if (!std::is_sorted(order_.begin(), order_.end())) std::sort(order_.begin(), order_.end());
       for (const auto& [key, id, slot] : order_) {
         const glm::vec4& color = ColorAt(slot);

@@ -60,7 +60,7 @@ class SampleTable {
                 steps.step[k] + i);
   }
 
-  /// Mask of covered samples; e0, e1 and e2 are the edge functions at the pixel's corner.
+  /// Returns the mask of covered samples. e0, e1 and e2 are the edge functions at the pixel's corner.
   [[nodiscard]] HWY_INLINE std::uint64_t MaskOf(const SampleSteps& steps, std::int32_t e0, std::int32_t e1,
                                                 std::int32_t e2) const {
     const DI d;
@@ -86,8 +86,8 @@ class SampleTable {
 /// Keys are those of view/triangle_keys.h. Within a pixel, a key differs from the centre's by at most 128 units of
 /// slope and the rounding of both.
 constexpr float kHalfPixel = kSubPixels / 2;
-/// Bound of three roundings, each of at most 2^-24 of the sum of absolute terms, twice, with a margin. The second
-/// constant covers keys so small that roundings are not relative.
+/// Bound on the rounding of two keys, with a margin: each key has three roundings of at most 2^-24 of the sum of its
+/// absolute terms. The second constant covers keys so small that roundings are not relative.
 constexpr float kKeyRounding = 16.0f / 16777216.0f, kLeastRounding = 1e-42f;
 
 class FragmentSink {
@@ -101,13 +101,13 @@ class FragmentSink {
         arrived(scratch.arrived),
         counts(scratch.counts.data()) {}
 
-  /// The pixels of the tile whose samples may lie within these bounds of vertices.
+  /// Returns the pixels of the tile whose samples may lie within these bounds of vertices.
   [[nodiscard]] HWY_INLINE FragmentBounds BoundsOf(VI x_min, VI x_max, VI y_min, VI y_max) const {
     return {First(x_min, pattern.high_x), Last(x_max, pattern.low_x, width), First(y_min, pattern.high_y),
             Last(y_max, pattern.low_y, height)};
   }
 
-  /// False if the tile must be divided. Tiles of one pixel always have room, up to the limit.
+  /// Returns false if the tile must be divided. Tiles of one pixel always have room, up to the limit.
   [[nodiscard]] bool HasRoom() {
     if (HWY_LIKELY(arrived.count <= kMostOfTile)) return true;
     if (width * height > 1) return false;
@@ -144,7 +144,7 @@ class FragmentSink {
     arrived.count += hn::Lanes(d);
   }
 
-  /// Appends the fragments of a vector that a mask names.
+  /// Appends those fragments of a vector that the mask `some` selects.
   HWY_INLINE void AppendSome(VU key, VU place, std::uint32_t triangle, hn::Mask<DU> some) {
     const Compactor<DU> compact(some);
     const std::size_t n = arrived.count;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fragments of a tile outside of kernels: places of a pixel's sub-samples, room for fragments, and holes in them.
+// The parts of gathering that are not kernels: positions of sub-samples, memory for fragments, and holes in fragments.
 //
 // Buffers at least double when they grow and never shrink, so nothing is allocated after the first tiles. Holes are
 // tested after sorting, in doubles and by the code that all methods share (view/screen_cutout.h), so only scenes with
@@ -53,7 +53,8 @@ SamplePattern sample_pattern(const View& view, int grid) {
   const int spacing = grid ? SamplePattern::unit / grid : 0;
   for (int y = 0; y < grid; ++y)
     for (int x = 0; x < grid; ++x) add(pattern, x * spacing + spacing / 2, y * spacing + spacing / 2);
-  // Reach of the samples: triangles that lie between the samples of pixels touch no pixel.
+  // The range of the samples in a pixel: a triangle that lies between the samples of neighbouring pixels touches no
+  // pixel.
   const auto xs = std::minmax_element(pattern.x.begin(), pattern.x.begin() + pattern.count);
   const auto ys = std::minmax_element(pattern.y.begin(), pattern.y.begin() + pattern.count);
   pattern.low_x = *xs.first;
@@ -79,11 +80,12 @@ void Arrived::grow(std::size_t wanted) {
 }
 
 GatherScratch::GatherScratch()
-    // Every pixel of the largest walk for every lane, and a vector of slack for whole stores.
+    // `references` has room for every pixel of the largest walk in every lane, and for one vector more, because stores
+    // write whole vectors.
     : counts(kTilePixels), group_base(kGroups + 1), references(16 * 16 * 16 + 64) {
   arrived.grow(kMostOfTile + kMostAtOnce);
   arrived.count = Arrived::first;
-  // Empty slots are gathered from like fragments, so number 0 must be readable.
+  // Empty slots read number 0 as if it were a fragment, so it must be readable.
   arrived.key[0] = arrived.triangle[0] = arrived.place[0] = arrived.mask_low[0] = arrived.mask_high[0] = 0;
 }
 

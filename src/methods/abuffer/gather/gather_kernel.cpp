@@ -5,8 +5,8 @@
 //    clusters --fetch, bounds, facing--> small --> SmallFragments --+--> FragmentSink: masks, keys, numbers of arrival
 //                                        large --> LargeFragments --+
 //
-// The sink is asked for room after every vector. If it has none, the tile is returned as too much, and the caller
-// halves it. So the memory of a thread is bounded for every scene.
+// The sink is asked for room after every vector. If it has none, gather_tile() returns too_much, and the caller halves
+// the tile. So the memory of a thread is bounded for every scene.
 
 #include "abuffer/gather/gather_kernel.h"
 
@@ -140,7 +140,7 @@ class TileGatherer {
         triangle.key[k] = screen.key[v];
       }
       if (!orient(triangle, frame_.plan.facing())) continue;
-      // A vector of large triangles may add more fragments than there is room for at once.
+      // Room is checked for each triangle, because a vector of large triangles may add more fragments than kMostAtOnce.
       if (!sink_.HasRoom()) return;
       large_.Draw(triangle);
     }
@@ -161,8 +161,8 @@ Gathered GatherTile(const GatherInput& frame, const GatherJob& job, GatherScratc
   return scratch.arrived.count == Arrived::first ? Gathered::nothing : Gathered::something;
 }
 
-// From fragments in the order of arrival to sorted lists. The lists of sixteen neighbouring pixels take the length of
-// the longest.
+// The functions below turn fragments in the order of arrival into sorted lists. The lists of the sixteen pixels of a
+// group all have the length of the longest.
 
 // Keys are not negative, so words may be compared as signed: AVX2 has no other comparison.
 using DW = hn::ScalableTag<std::int64_t>;
@@ -188,7 +188,7 @@ HWY_INLINE void SortGroup(std::uint64_t* slots, std::size_t length) {
   for (std::size_t p = top; p > 0; p /= 2) {
     std::size_t q = top, r = 0, d = p;
     for (;;) {
-      // All i with (i & p) == r: every other block of p.
+      // The loops visit all i with (i & p) == r, which are every other block of p numbers.
       for (std::size_t begin = r; begin + d < length; begin += 2 * p)
         for (std::size_t i = begin; i < HWY_MIN(begin + p, length - d); ++i)
           CompareExchange(words + i * kGroup, words + (i + d) * kGroup);
@@ -233,7 +233,7 @@ inline void FindTies(GatherScratch& s, std::size_t group) {
     for (std::size_t i = 0; i + 1 < length; ++i) {
       const auto a = hn::Load(d, reinterpret_cast<std::int64_t*>(s.slot(group, i)) + lane);
       const auto b = hn::Load(d, reinterpret_cast<std::int64_t*>(s.slot(group, i + 1)) + lane);
-      // Empty slots are 0 and tie with each other, but b of a real tie is not 0.
+      // Empty slots are 0 and tie with each other, but in a real tie b is not 0.
       const auto equal = hn::Eq(hn::ShiftRight<32>(a), hn::ShiftRight<32>(b));
       tied = hn::Or(tied, hn::And(equal, hn::Ne(b, hn::Zero(d))));
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gathers the fragments of one rectangle of pixels, sorts them into lists, and cuts holes out of them. The private
-// memory of one thread holds them as they arrive and sorted:
+// memory of one thread holds the fragments in the order of arrival, and then sorted:
 //
 //    counts      pixel 0   1   2  ...                   fragments of each pixel so far
 //    arrived     key | place | triangle | mask          one entry a fragment, in the order of arrival
@@ -19,7 +19,7 @@
 namespace frontmost::abuffer_detail {
 
 inline constexpr std::size_t kTilePixels = std::size_t(kTileSize) * kTileSize;
-/// Pixels are numbered by blocks of 4 x 4, which are sorted and composited together.
+/// Pixels are numbered by groups: blocks of 4 x 4 pixels, which are sorted and composited together.
 inline constexpr std::size_t kGroup = 16, kGroups = kTilePixels / kGroup;
 inline constexpr int kBlocksAcross = kTileSize / 4;
 
@@ -27,7 +27,8 @@ inline constexpr int kBlocksAcross = kTileSize / 4;
 inline constexpr int kRankBits = 20;
 inline constexpr std::uint32_t kMostOfPixel = (1u << kRankBits) - 1;
 
-/// A tile that holds more is divided. At 28 bytes a fragment, and up to 16 for the sorted lists, the limit is 14 MB.
+/// The most fragments of a tile; a tile that holds more is divided. This limits Arrived to 5 MB; its sorted lists need
+/// 8 bytes a slot.
 inline constexpr std::size_t kMostOfTile = std::size_t(1) << 18;
 /// The most fragments that one step of gathering may add before the room is checked again.
 inline constexpr std::size_t kMostAtOnce = kTilePixels + 64;
@@ -36,10 +37,10 @@ inline constexpr std::size_t kMostAtOnce = kTilePixels + 64;
   return ((y >> 2) * kBlocksAcross + (x >> 2)) * 16 + (y & 3) * 4 + (x & 3);
 }
 
-/// Key planes of the triangles of a tile, as in view/triangle_keys.h. The key at a point is (k0 + dx*gx) + dy*gy from
-/// (x0, y0), in 1/256 pixel from the tile's corner, limited to [low, high]; SteepKeys give the keys of steep triangles.
-/// `slack` bounds the rounding of the difference of two keys of one pixel. `half` bounds the difference of a pixel's
-/// keys from the centre's key.
+/// Key planes of the triangles of a tile, as in view/triangle_keys.h. The key at a point is (k0 + dx*gx) + dy*gy,
+/// limited to [low, high]. (dx, dy) is the point's distance from (x0, y0), in 1/256 pixel, and (x0, y0) is relative to
+/// the tile's corner. SteepKeys give the keys of steep triangles. `slack` bounds the rounding of the difference of two
+/// keys of one pixel. `half` bounds the difference between the keys of a pixel and the key at its centre.
 struct LocalTriangles {
   std::size_t count = 0;
   Buffer<std::int32_t> x0, y0;
@@ -80,8 +81,8 @@ struct GatherScratch {
 
   LocalTriangles triangles;
   Arrived arrived;
-  Buffer<std::uint32_t> counts;      ///< by pixel; the beginnings of the lists once they are sorted
-  Buffer<std::uint32_t> group_base;  ///< by group, in slots; then the end of the last group
+  Buffer<std::uint32_t> counts;      ///< by pixel: the number of fragments, and after sorting the beginning of the list
+  Buffer<std::uint32_t> group_base;  ///< by group: the first slot; then the end of the last group
   /// Slot-major: slot s of pixel p of a group is at (base + s) * 16 + p. A slot is key bits << 32 | ~number of the
   /// fragment, in descending order; 0 is empty.
   Buffer<std::uint64_t> slots;
@@ -106,12 +107,12 @@ struct GatherScratch {
   }
 };
 
-/// Places of a pixel's sub-samples, from its top left corner. Every pattern lies on multiples of 1/16 pixel, so edge
-/// functions may be shifted right by 4 before stepping from sample to sample: this is exact, and a step is a multiple
-/// of dx or -dy.
+/// Positions of a pixel's sub-samples, from its top left corner. Every pattern lies on multiples of 1/16 pixel, so edge
+/// functions may be shifted right by 4 before stepping from sample to sample. The shift is exact, and a step is a
+/// multiple of dx or -dy.
 struct SamplePattern {
   static constexpr int max_count = 64;
-  static constexpr int unit = 16;  ///< 1/256 pixels in a step
+  static constexpr int unit = 16;  ///< 1/256 pixels in 1/16 pixel
 
   int count = 1;
   std::array<std::int32_t, max_count> x{}, y{};  ///< in 1/16 pixel
@@ -124,8 +125,8 @@ struct SamplePattern {
   [[nodiscard]] std::vector<glm::ivec2> positions() const;
 };
 
-/// The pattern of a grid; grid 0 takes the view's own samples. \throws Error bad_argument unless the grid is 0, 2, 4 or
-/// 8.
+/// Returns the pattern of a grid of grid x grid samples, or of the view's own samples if `grid` is 0. \throws Error
+/// bad_argument unless the grid is 0, 2, 4 or 8.
 [[nodiscard]] SamplePattern sample_pattern(const View& view, int grid);
 
 /// The input that all tiles of a frame share.
@@ -143,9 +144,9 @@ struct GatherJob {
 
 enum class Gathered : std::uint8_t { nothing, something, too_much };
 
-/// Fills the scratch with all fragments of the rectangle, in the order of arrival. `too_much`: there are more than
-/// kMostOfTile; for rectangles of one pixel all are gathered. \throws Error limit_exceeded for more than kMostOfPixel
-/// in one pixel.
+/// Fills the scratch with all fragments of the rectangle, in the order of arrival. \returns `too_much` if there are
+/// more than kMostOfTile; in rectangles of one pixel, all fragments are gathered. \throws Error limit_exceeded for more
+/// than kMostOfPixel in one pixel.
 [[nodiscard]] Gathered gather_tile(const GatherInput& frame, const GatherJob& job, GatherScratch& scratch);
 
 /// Sorts gathered fragments into lists. Call once. O(n log^2 n) for lists of n fragments.

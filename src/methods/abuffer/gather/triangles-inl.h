@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fragments of triangles: of a few pixels many triangles at a time, of more pixels one at a time, in blocks of 4 x
-// 4 pixels.
+// Makes the fragments of triangles. Triangles of a few pixels are drawn many at a time, larger triangles one at a time,
+// in blocks of 4 x 4 pixels.
 //
 // The least and greatest edge value over all samples of a block tell whether it is wholly outside of an edge, wholly
 // inside of all three, or neither. Pixels that are covered wholly get full masks. In all other pixels samples are
@@ -27,8 +27,8 @@ namespace frontmost::abuffer_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Clamp of an edge value at a block's corner. Within the block the value changes by at most 2^29 + 2^27, so its sign
-// stays right and its sums stay within 32 bits.
+// Limit of edge values at a block's corner. Within the block a value changes by at most 2^29 + 2^27, so its sign stays
+// right and its sums stay within 32 bits.
 constexpr std::int64_t kEdgeLimit = std::int64_t(1) << 30;
 
 class LargeFragments {
@@ -42,7 +42,7 @@ class LargeFragments {
     }
   }
 
-  /// Precondition: the triangle is oriented, with vertices relative to the tile.
+  /// Draws one triangle. Precondition: the triangle is oriented, with vertices relative to the tile.
   void Draw(const ScreenTriangle& t) {
     const Bounds rect = BoundsOf(t);
     if (rect.x1 < rect.x0 || rect.y1 < rect.y0) return;
@@ -61,12 +61,12 @@ class LargeFragments {
     std::int32_t x0, y0, x1, y1;
   };
   struct Edge {
-    std::int64_t first;  // at the tile's corner
+    std::int64_t first;  // value at the tile's corner
     std::int32_t step_x, step_y;
-    std::int32_t sample_min, sample_max;   // over the samples of a pixel
-    std::int32_t block_min, block_max;     // over the samples of a block
-    HWY_ALIGN_MAX std::int32_t pixel[16];  // at the corners of a block's pixels
-    HWY_ALIGN_MAX std::int32_t block[16];  // at the corners of a row's blocks
+    std::int32_t sample_min, sample_max;   // extreme differences of a pixel's samples from its corner
+    std::int32_t block_min, block_max;     // extreme differences of a block's samples from its corner
+    HWY_ALIGN_MAX std::int32_t pixel[16];  // differences of a block's pixels from its corner
+    HWY_ALIGN_MAX std::int32_t block[16];  // differences of a row's blocks from the first
   };
 
   [[nodiscard]] Bounds BoundsOf(const ScreenTriangle& t) const {
@@ -85,7 +85,7 @@ class LargeFragments {
       const int n = k == 2 ? 0 : k + 1;
       const std::int32_t dx = t.x[n] - t.x[k], dy = t.y[n] - t.y[k];
       Edge& e = edge_[k];
-      // In 64 bits: vertices may be as far away as the guard band, where products exceed 32 bits.
+      // 64 bits are needed, because vertices may be as far away as the guard band, where products exceed 32 bits.
       e.first = (std::int64_t(dy) * t.x[k] - std::int64_t(dx) * t.y[k] - (IsTopLeft(dx, dy) ? 0 : 1)) >> 4;
       e.step_x = -dy * kStepsOfPixel;
       e.step_y = dx * kStepsOfPixel;
@@ -117,7 +117,7 @@ class LargeFragments {
     const float slope = std::abs(gx_) + std::abs(gy_);
     const auto [x_min, x_max] = std::minmax({t.x[0], t.x[1], t.x[2]});
     const auto [y_min, y_max] = std::minmax({t.y[0], t.y[1], t.y[2]});
-    // Keys of steep triangles are accurate to a rounding; the rounding of their gradients over a pixel remains.
+    // Keys of steep triangles are rounded only once, so only the rounding of their gradients over half a pixel counts.
     const float reach_x = is_steep_ ? kHalfPixel : float(x_max - x_min) + 2 * kSubPixels;
     const float reach_y = is_steep_ ? kHalfPixel : float(y_max - y_min) + 2 * kSubPixels;
     slack_ = (high_ + (reach_x * std::abs(gx_) + reach_y * std::abs(gy_))) * kKeyRounding + kLeastRounding;
@@ -144,7 +144,7 @@ class LargeFragments {
     if (is_steep_) t.steep_keys.push_back(steep_);
   }
 
-  /// Whether edge functions stay below 2^28 all over the tile: true up to 128 pixels of width and height.
+  /// Returns whether edge functions stay below 2^28 all over the tile: true up to 128 pixels of width and height.
   [[nodiscard]] static bool IsNarrow(const ScreenTriangle& t) {
     constexpr std::int32_t most = 128 * kSubPixels;
     const auto [x_min, x_max] = std::minmax({t.x[0], t.x[1], t.x[2]});
@@ -175,7 +175,7 @@ class LargeFragments {
   struct BlockRow {
     std::uint64_t touched = 0, full = 0;
   };
-  /// Classifies a row of blocks. `row`: edge functions at the corner of the row's first block.
+  /// Classifies a row of blocks. `row` holds the edge values at the corner of the row's first block.
   HWY_INLINE BlockRow FindBlocks(const Bounds& rect, const std::int32_t (&row)[3]) const {
     const DI d;
     BlockRow result;
@@ -250,7 +250,7 @@ class LargeFragments {
     AppendParts(pixel, key, BitsOf(d, hn::AndNot(covered, touched)));
   }
 
-  /// Keys of a block's pixels. Distances are whole numbers below 2^24, so floats add them exactly.
+  /// Returns the keys of a block's pixels. Distances are whole numbers below 2^24, so floats add them exactly.
   [[nodiscard]] HWY_INLINE VF KeysOf(std::int32_t bx, std::int32_t by, std::int32_t first) const {
     const DF d;
     constexpr std::int32_t size = 4 * kSubPixels, half = kSubPixels / 2;
@@ -300,7 +300,7 @@ class LargeFragments {
   }
 
   FragmentSink& sink_;
-  // Places of a block's pixels in the block, in pixels and in 1/256 pixel.
+  // Positions of a block's pixels in the block, in pixels and in 1/256 pixel.
   HWY_ALIGN_MAX std::int32_t column_[16], row_[16];
   HWY_ALIGN_MAX float centre_x_[16], centre_y_[16];
   HWY_ALIGN_MAX std::int32_t corner_[3][kMaxLanes];
@@ -316,8 +316,8 @@ class LargeFragments {
 // Triangles no wider and higher than this touch at most 16 x 16 pixels.
 constexpr std::int32_t kSmallExtent = 15 * kSubPixels;
 
-/// Small triangles that wait to be drawn: x, y and key bits of three vertices, and the id. Has room for one vector more
-/// than is drawn at a time.
+/// Small triangles that wait to be drawn: x, y and key bits of three vertices, and the id. The room is one vector more
+/// than the queue ever holds, because stores write whole vectors.
 struct FragmentQueue {
   static constexpr int kFields = 10;
   HWY_ALIGN_MAX std::int32_t field[kFields][3 * kMaxLanes];
@@ -453,8 +453,8 @@ class SmallFragments {
     }
   }
 
-  /// Notes (triangle, pixel) pairs that may cover a sample, as y << 8 | x << 4 | lane. \returns how many. With one
-  /// sample, every noted pair covers it.
+  /// Stores the (triangle, pixel) pairs that may cover a sample, as y << 8 | x << 4 | lane. \returns their number. If
+  /// the pattern has one sample, every stored pair covers it.
   HWY_INLINE std::size_t Walk() {
     const DI d;
     const DU du;

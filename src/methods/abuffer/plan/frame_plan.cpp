@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+// Makes the plan of a frame: finds how clusters are drawn, and lists them and single triangles by tile.
+//
 //    cluster on the screen     whole           listed in the tiles that its box touches
 //                              over 16 tiles   taken apart: every tile would look at all of its triangles
 //                              to be clipped   taken apart, triangle by triangle, and clipped
@@ -16,9 +18,9 @@
 namespace frontmost::abuffer_detail {
 namespace {
 
-// A cluster on more tiles than this is taken apart: every tile would look at all of its triangles.
+// A cluster on more tiles than this is taken apart, because every tile would go through all of its triangles.
 constexpr int kMaxTilesOfCluster = 16;
-// 256 MiB of numbers. Beyond this limit tiles look through all single triangles instead of a list of their own.
+// The most items in the lists of singles (256 MiB). Beyond this limit, tiles go through all singles instead of a list.
 constexpr std::size_t kMostSingleItems = std::size_t(1) << 26;
 
 struct TileSpan {
@@ -28,7 +30,7 @@ struct TileSpan {
   }
 };
 
-/// The tiles that bounds, in 1/256 pixel from the image's top left, touch.
+/// Returns the tiles that the bounds touch. Bounds are in 1/256 pixel from the image's top left.
 TileSpan tiles_of(std::int32_t x0, std::int32_t y0, std::int32_t x1, std::int32_t y1, const View& view) {
   constexpr int shift = 8 + 6;
   static_assert(1 << shift == kTileSize * kSubPixels);
@@ -59,7 +61,7 @@ bool misses(const ScreenTriangle& t, int tile_x, int tile_y) {
   return false;
 }
 
-/// Runs on this thread: a frame may be thinned within a loop that takes all threads.
+/// Lists are made on one thread, because a frame may be thinned within a loop that uses all threads.
 const Execution kAlone{.threads = 1};
 
 template <class Add>

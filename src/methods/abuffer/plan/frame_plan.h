@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The plan of a frame: clusters on the screen, and the clusters and single triangles of every tile.
 //
-// Unlike in the z-buffer, nothing is culled by depth, as hidden triangles count, too. So vertices of all clusters in
-// the picture are placed on the screen at once, before any tile begins, and tiles read them by their numbers.
+// Unlike in the z-buffer, nothing is culled by depth, because hidden triangles count, too. So the vertices of all
+// clusters in the picture are placed on the screen at once, before any tile begins, and tiles read them by their
+// indices.
 #pragma once
 
 #include <memory>
@@ -20,17 +21,18 @@ namespace frontmost::abuffer_detail {
 enum class ScreenFate : std::uint8_t {
   outside,  ///< no pixel can see it
   whole,    ///< every vertex is snapped
-  spread,   ///< every vertex is snapped, but the cluster is taken apart, as it covers many tiles
-  apart,    ///< taken apart, as some triangle may need clipping
+  spread,   ///< every vertex is snapped, but the cluster is taken apart, because it covers many tiles
+  apart,    ///< the cluster is taken apart, because some triangle may need clipping
 };
 
-/// A cluster's place. The bounds, in 1/256 pixel from the image's centre, are valid unless the fate is `apart`.
+/// A cluster on the screen. Its bounds, in 1/256 pixel from the image's centre, are valid unless the fate is `apart`.
 struct ClusterPlace {
   ScreenFate fate = ScreenFate::outside;
   std::int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
-/// Snapped vertices, from the image's centre, at their indices in ClusterSet. Vertices that cannot be snapped are 0.
+/// Snapped vertices relative to the image's centre, with the indices of ClusterSet. Vertices that cannot be snapped are
+/// 0.
 struct ScreenClusters {
   Buffer<std::int32_t> x, y;
   Buffer<float> key;
@@ -49,8 +51,8 @@ struct Rectangle {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// A triangle on the screen, vertices in 1/256 pixel from the image's top left, so ordered that its area is positive
-/// (clockwise to the eye, y being down).
+/// A triangle on the screen. Vertices are in 1/256 pixel from the image's top left. After orient(), their order makes
+/// the area positive (clockwise to the eye, because y is down).
 struct ScreenTriangle {
   std::int32_t x[3], y[3];
   float key[3];
@@ -63,13 +65,13 @@ struct ScreenTriangle {
 /// A list of numbers for every tile.
 using TileNumbers = Buckets<std::uint32_t>;
 
-/// A triangle of a plan: one of a cluster, or a single.
+/// Names a triangle of a plan: a triangle of a cluster, or a single.
 struct TriangleNumber {
-  std::uint32_t cluster;  ///< no_index: a single
-  std::uint32_t index;    ///< in the cluster, or in singles()
+  std::uint32_t cluster;  ///< no_index if the triangle is a single
+  std::uint32_t index;    ///< index in the cluster, or in singles()
 };
 
-/// The plan of a frame: 12 bytes a vertex, and 40 for every triangle that is large or had to be clipped.
+/// The plan of a frame. Memory: 12 bytes a vertex, and 40 bytes for every triangle that is large or had to be clipped.
 class FragmentPlan {
  public:
   FragmentPlan(const Surfaces& surfaces, const View& view, const Execution& execution);
@@ -84,7 +86,7 @@ class FragmentPlan {
 
   [[nodiscard]] std::span<const std::uint32_t> clusters(std::size_t tile) const { return cluster_lists_[tile]; }
   [[nodiscard]] std::span<const ScreenTriangle> singles() const { return singles_; }
-  /// The singles of a tile. None if lists were too long to make: then any single may be in the tile.
+  /// Returns the indices of a tile's singles. None if the lists would be too long: any single may then be in the tile.
   [[nodiscard]] std::optional<std::span<const std::uint32_t>> singles(std::size_t tile) const {
     if (!single_lists_) return std::nullopt;
     return (*single_lists_)[tile];
@@ -105,9 +107,9 @@ class FragmentPlan {
   }
   /// Precondition: for_each() visits this number.
   [[nodiscard]] ScreenTriangle triangle(const TriangleNumber& number) const;
-  /// Whether a texture may cut holes into the primitive.
+  /// Returns whether a texture may cut holes into the primitive.
   [[nodiscard]] bool may_have_holes(PrimitiveId id) const { return set().cutouts && set().cutouts->has(id); }
-  /// The plan of the same frame without some triangles. Precondition: `hidden` has no duplicates.
+  /// Returns the plan of the same frame without some triangles. Precondition: `hidden` has no duplicates.
   [[nodiscard]] FragmentPlan without(std::span<const TriangleNumber> hidden) const;
 
  private:

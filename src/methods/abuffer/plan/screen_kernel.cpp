@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Places all vertices of clusters on the screen, and finds the bounds of their clusters.
 //
-// A cluster's box is that of its snapped vertices, so it needs no margin. A vertex beyond the guard band, or too near
-// to the eye to be snapped, makes its cluster one that is taken apart; the vertex's place is never read.
+// A cluster's box is that of its snapped vertices, so it needs no margin. A cluster is taken apart if one of its
+// vertices cannot be snapped, because it lies beyond the guard band or too near to the eye. The place of such a vertex
+// is never read.
 
 #include "abuffer/plan/frame_plan.h"
 
@@ -57,7 +58,7 @@ class Transformer {
   }
 
  private:
-  /// \returns which of a vector of vertices are snapped.
+  /// \returns the mask of those vertices of a vector that are snapped.
   HWY_INLINE hn::Mask<DI> Snap(std::size_t v) {
     const DF d;
     const DI di;
@@ -66,8 +67,8 @@ class Transformer {
     const auto plain = screen::IsPlain(t_, vertices);
     const auto is_snapped = hn::RebindMask(di, plain);
     const screen::ScreenVertices snapped = screen::Snap(t_, vertices);
-    // Vertices that are not snapped become zeros, and are never read: converting numbers out of range differs from
-    // target to target.
+    // Vertices that are not snapped become zeros, because converting numbers out of range differs from target to
+    // target. These zeros are never read.
     hn::Store(hn::IfThenElseZero(plain, snapped.key), d, screen_.key.data() + v);
     hn::Store(hn::IfThenElseZero(is_snapped, snapped.x), di, screen_.x.data() + v);
     hn::Store(hn::IfThenElseZero(is_snapped, snapped.y), di, screen_.y.data() + v);

@@ -14,7 +14,7 @@
 namespace frontmost::painter_detail {
 
 int Plane::side_by_hand(const glm::dvec3& x) const {
-  // Rounding leaves little open but vertices that triangles share.
+  // Rounding hardly ever leaves the side open, except for vertices that triangles share.
   if (x == anchor_ || (x == u_.to && u_.from == anchor_) || (x == v_.to && v_.from == anchor_)) return 0;
   return sign_of_determinant(u_, v_, {x, anchor_});
 }
@@ -36,8 +36,9 @@ Bounded Plane::least_height(const glm::dvec3& centre, const std::array<glm::dvec
   return least;
 }
 
-/// Cramer's rule about a point of the first plane. The same sums of absolute values bound the rounding: three normals
-/// and a distance, each wrong by at most kRounding of its own terms, and a dozen roundings more.
+/// Applies Cramer's rule relative to a point of the first plane. The same sums, taken of absolute values, bound the
+/// rounding: three normals and a distance, each wrong by at most kRounding of its own terms, and a dozen roundings
+/// more.
 Approximate Plane::meeting(const std::array<const Plane*, 3>& planes) {
   const Plane &a = *planes[0], &b = *planes[1], &c = *planes[2];
   const auto size = [](const Plane& plane) { return plane.normal_.error / kRounding; };
@@ -84,7 +85,8 @@ struct Meeting {
   }
 };
 
-/// A quotient of rounded numbers, with an error bound; infinite if the sign of the denominator is open.
+/// Returns a quotient of rounded numbers, with an error bound, which is infinite if the sign of the denominator is
+/// open.
 Bounded quotient(const Bounded& above, const Bounded& below) {
   const double least = std::abs(below.value) - below.error, value = above.value / below.value;
   if (!(least > 0)) return {0, std::numeric_limits<double>::infinity()};

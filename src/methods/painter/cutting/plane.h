@@ -17,10 +17,10 @@
 
 namespace frontmost::painter_detail {
 
-/// A number of twice the length of doubles, as a sum of two doubles, together with the sum of the absolute values of
-/// its terms, of which its error is a share, whatever cancels in the number itself. For polynomials of up to the ninth
-/// degree in differences of doubles. Such numbers stand between doubles, which leave the sides of many corners open,
-/// and expansions, which are much slower.
+/// A number with twice the digits of a double: a sum of two doubles. The sum of the absolute values of its terms is
+/// stored, too, because the error is a share of that sum, whatever cancels in the number itself. Serves polynomials of
+/// up to the ninth degree in differences of doubles. Doubles leave the sides of many corners open, and expansions are
+/// much slower; these numbers stand between them.
 class Twice {
  public:
   Twice() = default;
@@ -29,15 +29,15 @@ class Twice {
     return {value, std::abs(value.high) * (1 + 1e-15)};
   }
 
-  /// A product or sum errs by less than 2^-100 of its size, and shares of factors add up to less than 2^-95 after nine
-  /// factors, their sums and the sums of the products. Beyond 10^+-250 doubles may have underflowed or overflowed, so
-  /// the error is unbounded.
+  /// Returns the value with an error bound. A product or sum errs by less than 2^-100 of its size. After nine factors,
+  /// their sums and the sums of the products, these errors add up to less than 2^-95. Beyond 10^+-250 doubles may have
+  /// underflowed or overflowed, so the error is unbounded.
   [[nodiscard]] Bounded bounded() const {
     const bool is_within_range = size_ > 1e-250 && size_ < 1e250;
     return {value_.high + value_.low,
             is_within_range ? size_ * 1.6e-28 : std::numeric_limits<double>::infinity()};  // 2^-92
   }
-  /// The sign, or 2 if the error leaves it open.
+  /// Returns the sign, or 2 if the error leaves it open.
   [[nodiscard]] int certain_sign() const {
     const Bounded rounded = bounded();
     return rounded.value > rounded.error ? 1 : rounded.value < -rounded.error ? -1 : 2;
@@ -59,7 +59,7 @@ class Twice {
   double size_ = 0;
 };
 
-/// Vectors of such numbers, or of expansions.
+/// Vectors of Twice, or of expansions.
 template <class Number>
 using LongVector = std::array<Number, 3>;
 
@@ -76,7 +76,7 @@ template <class Number>
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// A plane n.x = d, relative to a point.
+/// A plane n.x = d, where x is relative to some point.
 template <class Number>
 struct LongPlane {
   LongVector<Number> n;
@@ -104,9 +104,10 @@ class Plane {
     const int sign = certain_sign(bounded_dot(normal_.value, normal_.error, x - anchor_));
     return sign != 2 ? sign : side_by_hand(x);
   }
-  /// Height of x on the positive side, in the plane's own unit. x is known to within a distance `error`.
+  /// Returns the height of x above the plane, times the length of the normal. x is known to within a distance `error`.
   [[nodiscard]] Bounded height(const glm::dvec3& x, double error) const;
-  /// Height of the lowest corner of a box, given by its centre and the vectors from there to its sides.
+  /// Returns the height of the lowest corner of a box, which is given by its centre and the vectors from there to its
+  /// sides.
   [[nodiscard]] Bounded least_height(const glm::dvec3& centre, const std::array<glm::dvec3, 3>& halves,
                                      double error) const;
 
@@ -120,15 +121,15 @@ class Plane {
 
  private:
   [[nodiscard]] int side_by_hand(const glm::dvec3& x) const;
-  /// Whether both planes are stored as the same points.
+  /// Returns whether both planes are stored as the same points.
   [[nodiscard]] bool is_same(const Plane& other) const {
     const auto is_same_leg = [](const Leg& a, const Leg& b) { return a.to == b.to && a.from == b.from; };
     return anchor_ == other.anchor_ && is_same_leg(u_, other.u_) && is_same_leg(v_, other.v_);
   }
-  /// The plane in numbers of this kind, relative to `centre`.
+  /// Returns the plane in numbers of this kind, relative to `centre`.
   template <class Number>
   [[nodiscard]] LongPlane<Number> in_full(const glm::dvec3& centre) const;
-  /// side_of_meeting(), or 2 if numbers of this kind leave it open.
+  /// Returns side_of_meeting(), or 2 if numbers of this kind leave it open.
   template <class Number>
   [[nodiscard]] int sign_of_meeting(const std::array<const Plane*, 3>& planes) const;
   template <class Number>

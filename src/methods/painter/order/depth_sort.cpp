@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Newell's exchange, made to end. A piece P is painted once everything that it covers is painted; covered pieces that
-// are not painted yet go first. This is a depth-first search: if it comes back to a waiting piece, all pieces in
-// between have no order (Tarjan's strongly connected components). Pieces come from far to near, so almost everything
-// that one covers is painted already. Neighbours are looked for when a piece's turn comes, so no pair is ever stored.
-// The search has its own stack, because chains of covering pieces may be as long as there are pieces.
+// Newell's sort with exchanges, changed so that it always ends. A piece P is painted once everything that it covers is
+// painted; covered pieces that are not painted yet go first. This is a depth-first search: if it comes back to a
+// waiting piece, all pieces in between have no order (Tarjan's strongly connected components). Pieces come from far to
+// near, so almost everything that a piece covers is painted already. Neighbours are looked for when a piece's turn
+// comes, so no pair is ever stored. The search has its own stack, because chains of covering pieces may be as long as
+// there are pieces.
 //
 //    far                                         near
 //    [painted ......][ P waits -> Q waits -> R ][ not found yet ...]
@@ -21,7 +22,7 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// An integer that rises as depths fall.
+/// Returns an integer that is greater for lesser depths.
 std::uint32_t falling_key(float depth) {
   const auto bits = bits_as<std::uint32_t>(depth + 0.0f);  // no -0
   return bits >> 31 ? bits : ~bits & 0x7fffffff;
@@ -33,7 +34,7 @@ std::uint32_t falling_key(float depth) {
 template <class Depth>
 void sort_by_depth(const Pieces& pieces, std::vector<std::uint32_t>& members, const Depth& depth,
                    const Execution& execution) {
-  constexpr std::size_t few = 2048;  // counting digits does not pay for less
+  constexpr std::size_t few = 2048;  // counting digits does not pay for fewer pieces
   Buffer<std::uint64_t> items(members.size());
   for (std::size_t i = 0; i < items.size(); ++i)
     items[i] = std::uint64_t(falling_key(depth(members[i]))) << 32 | members[i];
@@ -53,23 +54,24 @@ void sort_by_depth(const Pieces& pieces, std::vector<std::uint32_t>& members, co
   for (std::size_t i = 0; i < items.size(); ++i) members[i] = std::uint32_t(items[i]);
 }
 
-/// One piece, prepared for tests against others, from the cheapest to the dearest test, each of which may decide:
+/// Tests whether piece P covers piece Q. The tests go from the cheapest to the most expensive, and the first test that
+/// decides ends them:
 ///
-///    is all of this piece behind the plane of the other?      it cannot cover the other
-///    is all of the other before the plane of this one?        it cannot cover the other
-///    does a side of either separate them on the screen?       they do not overlap
-///    (two whole triangles) which is nearer in the overlap?    by vertices within, then by sides that cross
+///    1. P lies wholly behind the plane of Q:        P does not cover Q
+///    2. Q lies wholly in front of the plane of P:   P does not cover Q
+///    3. a side separates P from Q on the screen:    P does not cover Q
+///    4. P and Q are whole triangles:                vertices in the overlap tell which is nearer, or sides that cross
 ///
 /// The first two tests decide most pairs. The fourth test reuses the signs of the third, so no sign is computed twice.
-/// All signs are exact: a pair that is tested in two cells, or from both sides, gets one answer.
+/// All signs are exact, so a pair that is tested in two cells, or also with P and Q exchanged, gets consistent answers.
 class NewellTests {
  public:
   NewellTests(const Pieces& pieces, std::uint32_t piece)
       : pieces_(pieces), piece_(piece), face_(pieces.face(piece)), plane_(face_.plane()) {}
 
   [[nodiscard]] const Plane& plane() const { return plane_; }
-  /// Whether the piece covers a point of `other`, by all tests except those of the extents. Also true if one of the two
-  /// was cut and no test decides: they may then have no order.
+  /// Returns whether the piece covers a point of `other`, by all tests except those of the extents. Also true if one of
+  /// the two was cut and no test decides, because they may then have no order.
   [[nodiscard]] bool covers(std::uint32_t other, PaintSteps& steps) {
     const Face& face = pieces_.face(other);
     const Plane other_plane = face.plane();
@@ -118,8 +120,8 @@ class NewellTests {
     }
     return false;
   }
-  /// In the overlap of two triangles on the screen, the nearer one changes only along a line. So the corners of the
-  /// overlap tell whether this triangle is nearer anywhere.
+  /// Returns whether this triangle is nearer anywhere in the overlap on the screen. Which triangle is nearer changes
+  /// only along a line, so the corners of the overlap tell.
   [[nodiscard]] bool is_over(const Face& other, const Plane& other_plane) const {
     for (std::size_t i = 0; i < 3; ++i) {
       if (is_within(turns_, i) && other_plane.side(glm::dvec3(face_.corners[i])) > 0) return true;
@@ -127,7 +129,7 @@ class NewellTests {
     }
     return crosses_over(other);
   }
-  /// Whether an edge of this triangle passes before an edge of the other.
+  /// Returns whether an edge of this triangle passes in front of an edge of the other.
   [[nodiscard]] bool crosses_over(const Face& other) const {
     for (std::size_t k = 0; k < 3; ++k)
       for (std::size_t i = 0; i < 3; ++i) {
@@ -149,7 +151,8 @@ class NewellTests {
   const Face& face_;
   const Plane plane_;
   std::optional<std::array<Plane, 3>> edges_;  ///< made when first needed
-  Turns other_turns_{}, turns_{};              ///< by this piece's edges, and by the other's edges
+  Turns other_turns_{}, turns_{};              ///< turns of the other's vertices about this piece's edges, and the
+                                               ///< reverse
 };
 
 constexpr std::uint32_t kReportEvery = 1 << 14;
@@ -184,7 +187,7 @@ class Search {
  private:
   static constexpr std::uint32_t kNotFound = no_index, kPainted = no_index - 1;
 
-  /// A piece whose neighbours are being looked at, and the progress in them.
+  /// A piece whose neighbours are being searched, and how far the search has come.
   struct Waiting {
     std::uint32_t member;
     PieceGrid::Range cells;
@@ -223,7 +226,8 @@ class Search {
     waiting_.push_back({member, cells, cells.first_x, cells.first_y, 0});
   }
 
-  /// The next piece that must be painted before w.member and was not found yet; no_index: there are no more.
+  /// Returns the next piece that must be painted before w.member and was not found yet, or no_index if there are no
+  /// more.
   std::uint32_t next_covered(Waiting& w) {
     std::optional<NewellTests> tests;
     for (; w.y <= w.cells.last_y; ++w.y, w.x = w.cells.first_x)
@@ -262,14 +266,14 @@ class Search {
     return no_index;
   }
 
-  /// Boxes of a cell, made when first needed; null for a few pieces.
+  /// Returns the boxes of a cell, made when first needed, or null if the cell has few pieces.
   const PieceBoxes* boxes_of(std::size_t cell) {
     const std::span<const std::uint32_t> pieces = grid_.cell(cell);
     if (pieces.size() <= kManyPieces) return nullptr;
     return &boxes_.try_emplace(cell, pieces_, members_, pieces).first->second;
   }
 
-  /// How many of the next pieces this piece cannot cover, because they lie before its plane.
+  /// Returns how many of the next pieces this piece cannot cover, because they lie in front of its plane.
   std::size_t pass_over(const PieceBoxes& boxes, const Waiting& w, std::optional<NewellTests>& tests) {
     if (!tests) tests.emplace(pieces_, members_[w.member]);
     std::size_t passed = 0;
@@ -292,7 +296,7 @@ class Search {
     return tests->covers(members_[other], steps_);
   }
 
-  /// Paints the pieces found since `first` that are not painted yet as one group.
+  /// Paints, as one group, the pieces found since `first` that are not painted yet.
   void paint_from(std::uint32_t first) {
     const std::size_t begin = groups_.pieces.size();
     for (;;) {
@@ -317,9 +321,9 @@ class Search {
   Poll& poll_;
   std::vector<std::uint32_t> unpainted_;               ///< by cell: number of painted entries at its beginning
   std::vector<std::uint32_t> found_;                   ///< by member: when it was found, or kPainted
-  std::vector<std::uint32_t> lowest_;                  ///< by member: the lowest of all that were found from it
-  std::vector<std::uint32_t> asked_by_;                ///< by member: avoids repeated tests, as most pairs meet in
-                                                       ///< several cells
+  std::vector<std::uint32_t> lowest_;                  ///< by member: the least found_ of all that were reached from it
+  std::vector<std::uint32_t> asked_by_;                ///< by member: the piece that it was tested with last, because
+                                                       ///< most pairs meet in several cells
   std::unordered_map<std::size_t, PieceBoxes> boxes_;  ///< by cell
   std::vector<std::uint32_t> open_;
   std::vector<Waiting> waiting_;

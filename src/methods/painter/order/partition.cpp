@@ -15,19 +15,19 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// Two and four times as many find planes that cut 5 % less, and take two and five times as long.
+/// Twice as many take twice as long, and four times as many five times as long; both find planes that cut 5 % less.
 constexpr std::size_t kMostCandidates = 8, kMostWitnesses = 64;
 constexpr std::size_t kStepsPerCut = 16;
 
-/// Numbers spread evenly over [0, count).
+/// Returns numbers that are spread evenly over [0, count).
 std::vector<std::size_t> spread(std::size_t count, std::size_t most) {
   std::vector<std::size_t> numbers(std::min(count, most));
   for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = i * count / numbers.size();
   return numbers;
 }
 
-/// Cost of a candidate: a cut costs one more piece in all later steps, and may be cut again; an uneven split costs as
-/// little as a level of the tree.
+/// Returns the cost of a candidate. A cut costs much, because it adds a piece to all later steps, and this piece may be
+/// cut again. An uneven split costs little: a level of the tree.
 std::size_t cost(const Pieces& pieces, const std::vector<std::uint32_t>& members, std::uint32_t candidate) {
   const Plane plane = pieces.face(candidate).plane();
   std::size_t cuts = 0, before = 0, behind = 0;
@@ -53,10 +53,10 @@ std::uint32_t choose(const Pieces& pieces, const std::vector<std::uint32_t>& mem
   return best;
 }
 
-/// Pairs that are tested, and other triangles that are then tested for sharing their line; all of them if there are
-/// fewer.
+/// Number of pairs that are tested, and number of other triangles that are then tested for planes through the pair's
+/// line. If there are fewer triangles, all are tested.
 constexpr std::size_t kPairs = 512, kOthers = 4096;
-/// Once in fifty times, so many more than were found among the tested triangles share the line.
+/// Added to the number of tested triangles that share the line: only once in fifty times is the true number greater.
 constexpr double kUnseen = 4;
 /// Margin of the estimate, in standard deviations of such a sample.
 constexpr double kDeviations = 4;
@@ -70,7 +70,7 @@ bool pierces(const glm::dvec3& from, const glm::dvec3& to, const Face& face) {
   return std::abs(turns) == 3;
 }
 
-/// Whether an edge of one triangle pierces the other.
+/// Returns whether an edge of one triangle pierces the other.
 bool pass_through(const Face& a, const Face& b) {
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = k == 2 ? 0 : k + 1;
@@ -93,7 +93,7 @@ class SharedLine {
     at_ = from + glm::cross(along_, p) * (glm::dot(q, glm::dvec3(b.corners[0]) - from) / square);
     rounding_ = 1e-12 * sizes / square;
   }
-  /// Also true if rounding leaves the answer open.
+  /// Returns whether the plane of a triangle contains the line. Also true if rounding leaves the answer open.
   [[nodiscard]] bool may_be_in_plane_of(const Face& face) const {
     const glm::dvec3 normal = normal_of(face), way = at_ - glm::dvec3(face.corners[0]);
     const double allowed = rounding_ * glm::length(normal);
@@ -107,7 +107,7 @@ class SharedLine {
   double rounding_;
 };
 
-/// Numbers below a limit, the same in every run.
+/// Pseudo-random numbers below a limit, the same in every run.
 class Picker {
  public:
   explicit Picker(std::size_t count) : count_(count) {}
@@ -121,7 +121,7 @@ class Picker {
   std::uint64_t state_ = 1;
 };
 
-/// The share of a cut that falls to one of the pairs that meet in a line, estimated low.
+/// Returns a low estimate of the share of a cut that falls to one pair: pairs that meet in the same line share cuts.
 double cuts_of_pair(const Pieces& pieces, const std::vector<std::uint32_t>& members, const SharedLine& line,
                     Picker& picker) {
   const std::size_t count = members.size();
@@ -160,9 +160,9 @@ Partition part(Pieces& pieces, const std::vector<std::uint32_t>& members, PaintS
   return partition;
 }
 
-/// Every two triangles that pass through each other take a cut of their own, along the line where they meet; other
-/// planes have other lines. If the planes of m triangles share a line, as two in one plane or blades around an axis do,
-/// m - 1 cuts may suffice for all their m * (m - 1) / 2 pairs.
+/// Every two triangles that pass through each other need a cut of their own along the line where they meet, because
+/// other pairs meet in other lines. But the planes of m triangles may share a line, as two in one plane or blades
+/// around an axis do. Then m - 1 cuts may suffice for all their m * (m - 1) / 2 pairs.
 double least_cuts(const Pieces& pieces, const std::vector<std::uint32_t>& members, Poll& poll) {
   constexpr std::size_t tests_per_step = 8;
   const auto count = double(members.size());

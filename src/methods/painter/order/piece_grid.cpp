@@ -9,17 +9,18 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// Finer cells hold fewer pieces that do not overlap, but list each piece more often: at most this often on average.
+/// Finer cells cause fewer tests of pieces that do not overlap, but list each piece more often: at most this often on
+/// average.
 constexpr double kEntriesPerPiece = 4;
 constexpr double kPiecesPerCell = 2;
 constexpr std::size_t kFewPieces = 16;
 constexpr double kMostColumns = 4096;
 
 constexpr std::size_t kFanout = 64;
-/// Relative margin of coordinates: more than rounding moves them.
+/// Relative margin of coordinates, which is greater than their rounding.
 constexpr double kBoxMargin = 1e-12;
 
-/// Three orthogonal directions, the first along a triangle's normal.
+/// Returns three orthogonal directions, the first along a triangle's normal.
 std::array<glm::dvec3, 3> axes_of(const Face& face) {
   const glm::dvec3 a(face.corners[0]), b(face.corners[1]), c(face.corners[2]);
   const glm::dvec3 normal = glm::cross(b - a, c - a), along = b - a;

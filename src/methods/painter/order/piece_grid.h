@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pieces by place, to find pieces that may cover another: by the cells of the screen that their boxes touch, and, if a
-// cell holds too many pieces, by boxes in space around many pieces at a time.
+// Finds pieces that may cover another piece. A grid lists pieces by the cells of the screen that their boxes touch. If
+// a cell has too many pieces, they also get boxes in space, around many pieces at a time.
 //
 //    +---+---+---+       cell: the pieces whose boxes touch it, in the order of their list. Two pieces that overlap on
 //    | 1 |1 4|   |       the screen share a cell, because the same rounding puts both into it. They may share several
@@ -17,13 +17,13 @@
 
 namespace frontmost::painter_detail {
 
-/// A grid over the boxes of a list of pieces. Each cell lists the pieces that touch it as places in that list, in the
-/// list's order.
+/// A grid over the boxes of a list of pieces. Each cell lists the pieces whose boxes touch it, as indices in that list,
+/// in ascending order.
 class PieceGrid {
  public:
   PieceGrid() = default;
   explicit PieceGrid(const std::vector<PolygonExtent>& extents);
-  /// Replaces each place i in the lists by numbers[i].
+  /// Replaces each index i in the cells by numbers[i].
   void renumber(const std::vector<std::uint32_t>& numbers) {
     for (std::size_t cell = 0; cell < cells_.count(); ++cell)
       for (std::uint32_t& entry : cells_[cell]) entry = numbers[entry];
@@ -40,7 +40,7 @@ class PieceGrid {
     return std::size_t(y) * std::size_t(columns_[0]) + std::size_t(x);
   }
   [[nodiscard]] std::span<const std::uint32_t> cell(std::size_t number) const { return cells_[number]; }
-  /// In pixels. Cells at the rim of the grid extend to infinity.
+  /// The box of a cell, in pixels. Cells at the rim of the grid extend to infinity.
   struct Box {
     glm::dvec2 low, high;
   };
@@ -55,33 +55,34 @@ class PieceGrid {
 
  private:
   void choose_cells(const std::vector<PolygonExtent>& extents);
-  /// Rounding is monotonic, so boxes that overlap share a cell.
+  /// Returns the cell of a coordinate. Rounding is monotonic, so boxes that overlap share a cell.
   [[nodiscard]] int index(float place, int axis) const {
     const float cell = (place - low_[axis]) * scale_[axis];
     return cell > 0 ? int(std::min(cell, float(columns_[axis] - 1))) : 0;
   }
 
-  glm::vec2 low_{0}, scale_{0};  ///< corner of the grid, and cells a pixel
+  glm::vec2 low_{0}, scale_{0};  ///< corner of the grid in pixels, and cells per pixel
   glm::ivec2 columns_{1};
   Buckets<std::uint32_t> cells_;
 };
 
-/// A list of pieces, in boxes around 64 pieces, around 64 of those boxes, and so on. A box lies along the plane of one
-/// of its pieces, so parallel pieces, which overlap everywhere, get flat boxes one behind the other.
+/// Boxes around a list of pieces: a box around every 64 pieces, a box around every 64 of these boxes, and so on. A box
+/// lies along the plane of one of its pieces, so parallel pieces, which overlap everywhere, get flat boxes one behind
+/// the other.
 class PieceBoxes {
  public:
-  /// `pieces` are places in `members`.
+  /// `pieces` are indices in `members`.
   PieceBoxes(const Pieces& all, const std::vector<std::uint32_t>& members, std::span<const std::uint32_t> pieces);
 
-  /// How many pieces from `first` on surely lie wholly on the positive side of a plane. A lower bound, as only boxes
-  /// that begin there are tested.
+  /// Returns how many pieces from `first` on certainly lie wholly on the positive side of a plane. This is a lower
+  /// bound, because only boxes that begin at `first` are tested.
   [[nodiscard]] std::size_t count_before(std::size_t first, const Plane& plane) const;
 
  private:
   struct Box {
     glm::dvec3 centre;
     std::array<glm::dvec3, 3> halves;  ///< vectors from the centre to the sides
-    double slack;                      ///< by which coordinates of its pieces may exceed the box
+    double slack;                      ///< coordinates of the pieces may exceed the box by this much
   };
   static Box box_of(const Pieces& all, const std::vector<std::uint32_t>& members,
                     std::span<const std::uint32_t> pieces);

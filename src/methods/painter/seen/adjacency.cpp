@@ -15,8 +15,8 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// At most so many equal sides wait for a neighbour; further ones count as open. A stack of n sheets seen from above
-/// would take n * n comparisons.
+/// At most so many equal sides wait for a neighbour, and further ones count as open. Otherwise a stack of n equal
+/// polygons would take n * n comparisons.
 constexpr int kMostSame = 64;
 
 /// Odd numbers without a pattern.
@@ -27,8 +27,8 @@ std::uint64_t hash_of(const glm::dvec3& at) {
   return mixed ^ (mixed >> 29);
 }
 
-/// Sides that have no neighbour yet, in a table in which a side and its reverse have the same place. A side leaves once
-/// it has found its neighbour: in meshes that lie in the order of the screen, few sides are there at a time.
+/// A table of the sides that have no neighbour yet, in which a side and its reverse have the same place. A side is
+/// removed once its neighbour comes. If meshes lie in the order of the screen, the table holds few sides at a time.
 class OpenSides {
  public:
   OpenSides(const ScreenPolygons& screen, std::vector<std::uint32_t>& across) : screen_(screen), across_(across) {
@@ -99,11 +99,12 @@ class OpenSides {
 /// If a greater share of sides is open, the search takes longer than it saves.
 constexpr double kMostOpen = 0.3;
 
-/// The place of a way from a to b relative to an outline.
+/// The place of the segment from a to b relative to an outline.
 enum class Beside : std::uint8_t { apart, touching, crossing };
 
-/// Separates by lines along the sides and the way: apart if one line keeps them more than OutlineClipper::thin away
-/// from each other.
+/// Tests the lines through the sides of the outline, and the line through a and b. The result is `apart` if one of
+/// these lines separates the outline from the segment a b, and one of the two is more than OutlineClipper::thin from
+/// the line.
 Beside beside(Outline outline, const glm::dvec2& a, const glm::dvec2& b) {
   const glm::dvec2 across = b - a;
   double least = std::numeric_limits<double>::infinity(), greatest = -least;
@@ -166,7 +167,7 @@ class Finder {
 
   [[nodiscard]] bool is_there(std::size_t slot) const { return gone_.empty() || !gone_[slot]; }
 
-  /// \returns false if there are too many.
+  /// Finds the open sides. \returns false if there are too many.
   bool find_open_sides() {
     std::size_t sides = 0;
     for (std::size_t slot = 0; slot < screen_.count(); ++slot) {
@@ -184,7 +185,8 @@ class Finder {
     return double(open_.size()) <= kMostOpen * double(sides);
   }
 
-  /// Whether the polygon lies in the picture: the grid's cells do not list open sides beyond.
+  /// Returns whether the polygon lies wholly in the picture. The grid's cells do not list open sides outside the
+  /// picture.
   [[nodiscard]] bool is_in_picture(std::size_t slot) const {
     const Outline outline = screen_.outline(slot);
     return std::all_of(outline.begin(), outline.end(), [&](const PaintCorner& corner) {
@@ -230,7 +232,7 @@ class Finder {
     }
   }
 
-  /// Blocks the sides on whose middle an open side lies: nothing is known across them.
+  /// Blocks the sides whose middle lies on an open side, because nothing is known across them.
   void block(std::uint32_t slot, const OpenSide& side) {
     const Outline outline = screen_.outline(slot);
     for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -277,7 +279,7 @@ class Finder {
   const std::vector<std::uint8_t>& gone_;
   Poll poll_;
   std::vector<State> state_;
-  std::vector<std::uint8_t> is_blocked_;  ///< by corner
+  std::vector<std::uint8_t> is_blocked_;  ///< by the corner at which a side begins
   std::vector<OpenSide> open_;
   std::vector<std::uint32_t> found_;
 };

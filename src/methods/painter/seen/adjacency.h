@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which polygons share a side, as those of a mesh do, and which polygons no other one overlaps on the screen, found
-// from the few sides without a neighbour.
+// Finds which polygons share a side, as polygons of a mesh do, and which polygons no other polygon overlaps on the
+// screen. The latter is found from the few sides without a neighbour.
 //
 //           ____ ____          The side that both squares share runs down in one and up in the other. The neighbour
 //          |    ^    |         lies across it, and a walk over the screen continues there. Sides at the rim have no
@@ -23,7 +23,7 @@ class Adjacency {
  public:
   explicit Adjacency(const ScreenPolygons& screen);
 
-  /// The slot of the polygon across a side, or no_index. The side is given by its first corner in
+  /// Returns the slot of the polygon across a side, or no_index. The side is given by its first corner in
   /// ScreenPolygons::corners().
   [[nodiscard]] std::uint32_t across(std::size_t corner) const { return across_[corner]; }
 
@@ -31,12 +31,12 @@ class Adjacency {
   std::vector<std::uint32_t> across_;
 };
 
-/// By slot: 1 if surely no other polygon overlaps the one in it. Polygons with `gone[slot]` do not count; an empty
-/// `gone` means that none is gone. Finds nothing in scenes whose polygons share few sides.
+/// Returns, by slot, 1 if certainly no other polygon overlaps the polygon in it. Polygons with `gone[slot]` do not
+/// count; an empty `gone` means that none is gone. If polygons share few sides, none is found.
 [[nodiscard]] std::vector<std::uint8_t> find_unoverlapped(const ScreenPolygons& screen, const Adjacency& adjacency,
                                                           const std::vector<std::uint8_t>& gone, PaintEffort& effort);
 
-/// A convex outline, prepared for finding the sides of others that cross it.
+/// A convex outline, prepared for finding the sides of other polygons that cross it.
 class CoveredOutline {
  public:
   void set(Outline outline) {
@@ -57,7 +57,7 @@ class CoveredOutline {
     double from, to;
     [[nodiscard]] bool is_any() const { return from < to; }
   };
-  /// Empty if the way goes less deep into the outline than OutlineClipper::thin.
+  /// Returns an empty crossing if the way goes less deep into the outline than OutlineClipper::thin.
   [[nodiscard]] Crossing crossing(const glm::dvec2& a, const glm::dvec2& b) const {
     constexpr Crossing none{1, 0};
     if ((a.x <= low_.x && b.x <= low_.x) || (a.x >= high_.x && b.x >= high_.x) || (a.y <= low_.y && b.y <= low_.y) ||
@@ -99,9 +99,9 @@ class CoveredOutline {
 ///        |   / outline \ |
 ///        +---------------+
 ///
-/// Clipping would also tell, but it makes parts and corners for every occluder. Most hidden polygons are hidden by a
-/// piece of one mesh; then nothing needs to be cut. All comparisons have the same slack, OutlineClipper::thin, so
-/// hairlines between neighbours, which rounding leaves, do not open a union.
+/// Clipping would give the answer, too, but it makes parts and corners for every occluder. Most hidden polygons are
+/// hidden by a piece of one mesh, so that nothing needs to be cut. All comparisons have the same slack,
+/// OutlineClipper::thin, so hairlines between neighbours, which rounding leaves, do not open a union.
 ///
 /// If an occluder lies beyond each such side, the union hides all of the outline: an open part would have a border,
 /// which would be a side without an occluder beyond it. Not for several threads at once.
@@ -112,7 +112,7 @@ class OccluderUnion {
 
   enum class Found : std::uint8_t {
     hidden,
-    open,     ///< but at open_at()
+    open,     ///< not hidden at open_at()
     unknown,  ///< there are too many occluders
   };
   /// Selects the outline to test.
@@ -154,7 +154,7 @@ class OccluderUnion {
 
   struct Reached {
     std::uint32_t slot;
-    std::size_t from;  ///< number of the one before it; of the first one its own
+    std::size_t from;  ///< index in found_ of the occluder that it was reached from; for the first one its own
   };
 
   [[nodiscard]] bool is_found(std::uint32_t slot) const { return asked_[slot] == turn_; }
@@ -163,11 +163,12 @@ class OccluderUnion {
     found_.push_back({slot, from});
   }
 
-  /// Looks for occluders beyond a side of found_[number] without a neighbour, step by step: meshes that were cut have
-  /// sides that lie beside two others.
+  /// Looks, step by step, for occluders beyond a side of found_[number] that has no neighbour: in meshes that were cut,
+  /// a side may lie beside two others.
   template <class Hiders>
   Found step_along(const glm::dvec2& a, const glm::dvec2& b, std::size_t number, const Hiders& hiders) {
-    // Polygons hide points up to OutlineClipper::thin beside them: points this far out are certainly not on the side.
+    // Polygons hide points up to OutlineClipper::thin beside them, so points twice as far out are certainly beyond the
+    // side.
     const glm::dvec2 way = b - a, out = glm::dvec2(-way.y, way.x) * (2 * OutlineClipper::thin / glm::length(way));
     const glm::dvec2 from = a + out;
     const CoveredOutline::Crossing crossing = outline_.crossing(from, b + out);
@@ -187,7 +188,7 @@ class OccluderUnion {
     }
     return Found::hidden;
   }
-  /// An occluder among those found that lies over a place; `likely` is tried first.
+  /// Returns an occluder among those found that lies over a place, or no_index. `likely` is tried first.
   [[nodiscard]] std::uint32_t found_at(const glm::dvec2& place, std::size_t likely) const {
     const auto holds = [&](std::size_t i) { return is_within(screen_.outline(found_[i].slot), place, 0); };
     if (holds(likely)) return found_[likely].slot;
@@ -195,7 +196,7 @@ class OccluderUnion {
       if (i != likely && holds(i)) return found_[i].slot;
     return no_index;
   }
-  /// The share of a way at which it leaves an outline widened by OutlineClipper::thin.
+  /// Returns the share of a way at which it leaves an outline that is widened by OutlineClipper::thin.
   static double end_within(Outline outline, const glm::dvec2& from, const glm::dvec2& way) {
     double end = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < outline.size(); ++i) {

@@ -97,7 +97,7 @@ OutlineClipper::Place OutlineClipper::split(const Line& line) {
   return Place::both;
 }
 
-/// \returns true if the part is to be removed; its remaining parts were added.
+/// \returns true if the part is to be removed; what remains of it was added.
 bool OutlineClipper::subtract_from(std::size_t part, Outline cover, bool may_split) {
   const Outline outline = (*this)[part];
   lines_.clear();

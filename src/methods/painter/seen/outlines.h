@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Convex outlines on the screen, and clipping of one by others.
 //
-// Places are doubles in pixels. Depths are affine over the screen, so a corner made by a cut has the mean of the depths
-// beside it. Nothing here is exact: pieces were cut exactly before, and the result is only looked at in pixels. So
-// every comparison has a slack of a thousandth of a pixel (OutlineClipper::thin), always to the side on which a polygon
-// stays visible.
+// Positions are doubles in pixels. Depths are affine over the screen, so the depth of a corner that a cut makes is
+// interpolated. Nothing here needs to be exact, because pieces were cut exactly before, and the result is only looked
+// at in pixels. Every comparison has a slack of a thousandth of a pixel (OutlineClipper::thin), always to the side on
+// which a polygon stays visible.
 #pragma once
 
 #include <span>
@@ -22,26 +22,27 @@ struct Cover {
   glm::dvec2 low, high;
 };
 
-/// Whether two boxes have no point in common inside of both.
+/// Returns whether two boxes do not overlap. They may touch.
 template <class A, class B>
 [[nodiscard]] bool is_apart(const A& a, const B& b) {
   return a.low.x >= b.high.x || b.low.x >= a.high.x || a.low.y >= b.high.y || b.low.y >= a.high.y;
 }
 
-/// Pixels: shorter sides have no direction.
+/// In pixels. Shorter sides have no direction.
 inline constexpr double shortest_side = 1e-9;
 
-/// Positive if `at` lies to the left of `way` in a plane whose y goes up; twice the area of their triangle.
+/// Returns twice the area of the triangle of `way` and `at`, positive if `at` lies to the left of `way` in a plane
+/// whose y goes up.
 [[nodiscard]] inline double turn(const glm::dvec2& way, const glm::dvec2& at) { return way.x * at.y - way.y * at.x; }
 
-/// Whether an outline is nowhere wider than `width`, judged by its area and perimeter.
+/// Returns whether an outline is nowhere wider than `width`, judged by its area and perimeter.
 [[nodiscard]] bool is_narrow(Outline outline, double width);
 
-/// Whether an outline is too narrow for its sides to bound its inside: all the screen may be on their inner side. Cuts
-/// leave such pieces, and models have triangles of that size. They hide nothing.
+/// Returns whether an outline is too narrow for its sides to bound it: the whole screen may be on their inner side.
+/// Cuts leave such pieces, and models have triangles of that size. They hide nothing.
 [[nodiscard]] inline bool is_flat(Outline outline) { return outline.empty() || is_narrow(outline, shortest_side); }
 
-/// Whether a point is within an outline, or up to `beside` pixels beside it.
+/// Returns whether a point is within an outline, or up to `beside` pixels beside it.
 [[nodiscard]] inline bool is_within(Outline outline, const glm::dvec2& at, double beside) {
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const glm::dvec2 p(outline[i].at), way = glm::dvec2(outline[i + 1 == outline.size() ? 0 : i + 1].at) - p;
@@ -73,11 +74,11 @@ class OutlineList {
   std::vector<std::size_t> ends_;
 };
 
-/// Clips convex outlines: counter-clockwise to the eye, z affine over the screen. Covers must not be flat. Not for
-/// several threads at once.
+/// Clips convex outlines by other outlines. All are counter-clockwise to the eye, with z affine over the screen. Covers
+/// must not be flat. Not for several threads at once.
 class OutlineClipper {
  public:
-  /// Pixels: thinner parts are dropped.
+  /// In pixels. Thinner parts are dropped.
   static constexpr double thin = 1.0 / 1024;
 
   void begin(Outline outline) {
@@ -86,16 +87,16 @@ class OutlineClipper {
     add(outline);
     is_changed_ = false;
   }
-  /// Removes everything within `cover`. More than 48 parts are not split any further: only parts that lie wholly within
-  /// `cover` are then removed. O(parts). \returns true if nothing is left.
+  /// Removes everything within `cover`. If there are more than 48 parts, they are not split further: only parts that
+  /// lie wholly within `cover` are then removed. O(parts). \returns true if nothing is left.
   bool subtract(const Cover& cover);
   /// Removes everything outside a box.
   void keep_within(const glm::dvec2& low, const glm::dvec2& high);
 
   [[nodiscard]] std::size_t count() const { return parts_.size(); }
   [[nodiscard]] Outline operator[](std::size_t i) const { return {corners_.data() + parts_[i].first, parts_[i].count}; }
-  /// Whether something was removed since begin() or forget_changes().
   void forget_changes() { is_changed_ = false; }
+  /// Whether something was removed since begin() or forget_changes().
   [[nodiscard]] bool is_changed() const { return is_changed_; }
 
  private:
@@ -103,7 +104,7 @@ class OutlineClipper {
     std::size_t first, count;
     glm::dvec2 low, high;
   };
-  /// The line of a side, with a direction of unit length; positive is outside.
+  /// The line of a side, with a direction of unit length. Points outside have positive distances.
   struct Line {
     glm::dvec2 from, along;
   };
@@ -115,7 +116,8 @@ class OutlineClipper {
   static bool parts(Outline a, Outline b);
   void add(Outline outline);
   bool subtract_from(std::size_t part, Outline cover, bool may_split);
-  /// Leaves the inner part of inside_ relative to a line, and puts the rest into outside_. \returns where inside_ was.
+  /// Splits inside_ by a line: keeps the part on the inner side, and puts the rest into outside_. \returns the place of
+  /// inside_ before.
   Place split(const Line& line);
 
   std::vector<PaintCorner> corners_;  ///< corners of all parts since begin(), including removed parts

@@ -14,7 +14,7 @@ namespace {
 glm::vec2 place_of(const PaintCorner& corner) { return glm::vec2(corner.at); }
 glm::vec2 place_of(const glm::dvec2& corner) { return glm::vec2(corner); }
 
-/// The box around corners, as far as it lies in the picture.
+/// Returns the box around corners, as far as it lies in the picture.
 template <class Corner>
 PolygonExtent extent_within(const glm::vec2& size, std::span<const Corner> corners) {
   PolygonExtent extent{size, glm::vec2(0), 0, 0};
@@ -28,13 +28,13 @@ PolygonExtent extent_within(const glm::vec2& size, std::span<const Corner> corne
   return extent;
 }
 
-/// Pixels beyond the picture. Sides next to the eye's plane may reach farther, and are cut there: at this distance
-/// doubles still give a place in the picture to 1e-9 pixel.
+/// In pixels beyond the picture. Polygons next to the eye's plane may reach farther, and are cut at this distance, at
+/// which doubles still give a point of the picture to 1e-9 pixel.
 constexpr double kReach = 1 << 22;
 
-/// The part of a convex outline on the lower, or the upper, side of a line along an axis. The cut is computed from the
-/// nearer end of a side, as an end at 1e17 pixels has no digits for a place near the picture. If both ends are so far
-/// away, neither has digits, but the cut is on the line, so nothing lies beyond it.
+/// Returns the part of a convex outline on the lower, or the upper, side of the line at `border` on an axis. The cut is
+/// computed from the nearer end of a side, because an end at 1e17 pixels has no digits for a point near the picture. If
+/// both ends are so far away, the cut is inaccurate, but it is on the line, so nothing lies beyond the line.
 std::vector<PaintCorner> cut_along_axis(Outline outline, int axis, double border, bool is_lower) {
   std::vector<PaintCorner> left;
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -52,7 +52,7 @@ std::vector<PaintCorner> cut_along_axis(Outline outline, int axis, double border
   return left;
 }
 
-/// Slots of places, found by counting how many polygons begin in each cell.
+/// Returns the slots of places, found by counting how many polygons begin in each cell.
 std::vector<std::uint32_t> slots_of(const std::vector<PolygonExtent>& extents, const PieceGrid& grid) {
   std::vector<std::uint32_t> slots;
   slots.reserve(extents.size());
@@ -174,7 +174,7 @@ void ScreenPolygons::cut_at_reach(const std::vector<std::size_t>& far_slots) {
       part = cut_along_axis(part, axis, -kReach, false);
       part = cut_along_axis(part, axis, size_[axis] + kReach, true);
     }
-    // No part of it is nearer: a point of the border stands for it.
+    // If no part of the outline is within reach, a point of the border stands for it.
     if (part.size() < 3) {
       part.assign(3, outline(slot)[0]);
       for (PaintCorner& corner : part)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polygons on the screen, the input of all functions of this folder. They find which polygons hide which.
+// Polygons on the screen, the input of all functions of this folder. These functions find which polygons hide others.
 //
 //   place in the order     1 ____________        An occluder is a polygon that nothing is seen through. It hides
 //   of painting              |   2 ______|___    earlier polygons under it. The visible part of 1 is 1 without the
@@ -20,13 +20,13 @@
 
 namespace frontmost::painter_detail {
 
-/// A depth that is affine over the screen: points between two corners on the screen have the mean of their depths. In
+/// Returns a depth that is affine over the screen, so that it can be interpolated between two corners on the screen. In
 /// perspective depths are not affine, but their reciprocals are. The function is its own inverse.
 [[nodiscard]] inline double affine_depth(const View& view, double depth) {
   return view.projection.orthographic ? depth : 1 / depth;
 }
 
-/// The box on the screen; depths are 0.
+/// Returns the box on the screen, with depths of 0.
 [[nodiscard]] inline PolygonExtent box_of(Outline outline) {
   PolygonExtent box{glm::vec2(outline[0].at), glm::vec2(outline[0].at), 0, 0};
   for (const PaintCorner& corner : outline) {
@@ -45,7 +45,7 @@ struct ScreenPolygon {
 
 /// All polygons of one painting order, projected to the screen, with affine depths. A polygon has a place in the order
 /// of painting, and is stored in a slot. Slots are in the order of the grid's cells, so polygons that are near on the
-/// screen are near in memory: a polygon is always read together with its neighbours.
+/// screen are near in memory. This pays, because a polygon is always read together with its neighbours.
 class ScreenPolygons {
  public:
   ScreenPolygons(const PaintOrder& order, const Occluders& occluders);
@@ -56,7 +56,7 @@ class ScreenPolygons {
   ScreenPolygons(std::span<const ScreenPolygon> polygons, const View& view);
 
   [[nodiscard]] std::size_t count() const { return slots_.size(); }
-  /// The place of the polygon in a slot.
+  /// Returns the place of the polygon in a slot.
   [[nodiscard]] std::uint32_t place(std::size_t slot) const { return slots_[slot].place; }
   [[nodiscard]] std::uint32_t slot(std::uint32_t place) const { return slot_of_[place]; }
   [[nodiscard]] Outline outline(std::size_t slot) const {
@@ -65,10 +65,10 @@ class ScreenPolygons {
   /// All outlines one after another in the order of slots; first_corner(slot) is where a slot's outline begins.
   [[nodiscard]] Outline corners() const { return {corners_.data(), corners_.size()}; }
   [[nodiscard]] std::size_t first_corner(std::size_t slot) const { return slots_[slot].first_corner; }
-  /// The first of the consecutive places of the same primitive, or of the same group.
+  /// Returns the first of the consecutive places that have the same primitive, or the same group, as this polygon.
   [[nodiscard]] std::uint32_t first_place(std::size_t slot) const { return slots_[slot].first_place; }
   [[nodiscard]] const PolygonExtent& extent(std::size_t slot) const { return slots_[slot].extent; }
-  /// Whether the polygon hides polygons behind it, and has an area.
+  /// Returns whether the polygon hides polygons behind it, and has an area.
   [[nodiscard]] bool is_occluder(std::size_t slot) const { return slots_[slot].hides; }
   [[nodiscard]] const PieceGrid& grid() const { return grid_; }
   /// The slots of polygons that touch a cell of the grid, in the order of their places.
@@ -89,7 +89,7 @@ class ScreenPolygons {
   /// Makes room for the corners of all slots.
   void make_room();
   [[nodiscard]] bool is_within_reach(Outline outline) const;
-  /// Cuts outlines that reach so far beyond the picture that doubles lose places in it.
+  /// Cuts outlines that reach so far beyond the picture that doubles lose precision in it.
   void cut_at_reach(const std::vector<std::size_t>& far_slots);
   /// A polygon's data other than its corners. Consecutive polygons with the same group number are one group.
   struct Description {
@@ -108,8 +108,8 @@ class ScreenPolygons {
 
 inline constexpr std::size_t slots_per_list = 1024;
 
-/// Calls add(worker, slot, list) for every slot, which adds the results of one polygon to a List. Each thread has a
-/// worker of its own, made by new_worker(). \returns the joined list, by place. `name` names the progress.
+/// Calls add(worker, slot, list) for every slot. `add` appends the results of the slot's polygon to a List. Each thread
+/// has a worker of its own, made by new_worker(). \returns the joined list, by place. `name` names the progress.
 ///
 /// A List has add_polygon(other, i), which adds the results of the list `other` for its i-th polygon, and
 /// reserve(lists).

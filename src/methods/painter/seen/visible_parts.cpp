@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The visible parts of polygons. Each polygon is clipped by the union of the occluders in front of it: visible_parts()
-// clips the polygons of an order, without_hidden() those that have no order yet. A polygon in few cells of the grid is
-// clipped by the occluders in these cells. Any other polygon is halved along the cells; halves that are wholly visible
-// are joined again.
+// Finds the visible parts of polygons. Each polygon is clipped by the union of the occluders in front of it:
+// visible_parts() clips the polygons of an order, without_hidden() clips polygons that have no order yet. A polygon in
+// few cells of the grid is clipped by the occluders in these cells. Any other polygon is halved along the cells; halves
+// that are wholly visible are joined again.
 //
 // Inside a machine nearly everything is hidden. Ordering the hidden parts would take most of the time, because parts
-// pass through each other there. One of Newell's plane tests often tells which of two pieces is before the other
+// pass through each other there. One of Newell's plane tests often tells which of two pieces is in front of the other
 // wherever they overlap, so that no order is needed. A hidden piece may count as an occluder of others: at any point of
-// the screen the foremost piece is hidden by nothing, so not all pieces are left out.
+// the screen nothing hides the foremost piece, so not all pieces are left out.
 #include <algorithm>
 #include <functional>
 
@@ -18,9 +18,9 @@ namespace frontmost {
 namespace painter_detail {
 namespace {
 
-/// Polygons in more cells are halved.
+/// A polygon in more cells than this is halved.
 constexpr int kFewCells = 4;
-/// Pixels. A narrower part has no room for a hem, and viewers show a hairline. So a polygon from which a cut would
+/// In pixels. A narrower part has no room for a trap, and viewers show a hairline. So a polygon from which a cut would
 /// leave a narrower part stays whole, and is painted over.
 constexpr double kNarrowest = 1.0 / 16;
 /// The most later polygons of a cell, from the front-most on, that are tried as covers of a polygon. Without a limit, a
@@ -52,16 +52,16 @@ bool is_few(const PieceGrid::Range& cells) {
 /// Clips one polygon after another. Not for several threads at once.
 class OcclusionClipper {
  public:
-  /// Whether a polygon is wholly behind a later one where they overlap; both are given by their places. Without such a
-  /// function the order decides: the earlier polygon is always behind.
+  /// Returns whether a polygon is wholly behind a later one where they overlap; both are given by their places. Without
+  /// such a function the order decides: the earlier polygon is always behind.
   using IsBehind = std::function<bool(std::uint32_t place, std::uint32_t cover)>;
 
   OcclusionClipper(const ScreenPolygons& screen, const Adjacency& adjacency, PaintEffort& effort,
                    IsBehind is_behind = {})
       : screen_(screen), poll_(effort), is_behind_(std::move(is_behind)), union_(screen, adjacency) {}
 
-  /// Whether the polygon in a slot is wholly hidden. Also false if the answer would take long. Most polygons are not
-  /// hidden, and their middles tell.
+  /// Returns whether the polygon in a slot is wholly hidden. Also false if the answer would take long. Most polygons
+  /// are not hidden, and a look at their middle suffices.
   [[nodiscard]] bool is_hidden(std::size_t slot) {
     cutter_.begin(screen_.outline(slot));
     cutter_.keep_within(glm::dvec2(0), screen_.size());
@@ -78,7 +78,7 @@ class OcclusionClipper {
     return is_few(cells) && take_covers(slot, extent, cells);
   }
 
-  /// The visible parts of the polygon in a slot; valid until the next call.
+  /// Returns the visible parts of the polygon in a slot; valid until the next call.
   [[nodiscard]] const OutlineList& clip(std::size_t slot) {
     seen_.clear();
     const PolygonExtent& extent = screen_.extent(slot);
@@ -137,7 +137,7 @@ class OcclusionClipper {
     cutter_.keep_within(low, high);
     return cutter_.count() == 0 ? Corners() : Corners(cutter_[0].begin(), cutter_[0].end());
   }
-  /// Polygons that may hide things behind or beside the polygon in a slot.
+  /// The polygons that may hide the polygon in a slot, as OccluderUnion::spread() asks for them.
   struct Hiders {
     OcclusionClipper& clipper;
     std::size_t slot;
@@ -149,7 +149,7 @@ class OcclusionClipper {
     }
     [[nodiscard]] std::uint32_t at(const glm::dvec2& place) const { return clipper.hider_at(slot, place); }
   };
-  /// The slot of a polygon that hides a point, or points next to it; no_index: none.
+  /// Returns the slot of a polygon that hides a point, or points next to it, or no_index if there is none.
   [[nodiscard]] std::uint32_t hider_at(std::size_t slot, const glm::dvec2& at) {
     const std::uint32_t first_place = screen_.first_place(slot);
     const std::span<const std::uint32_t> cell = screen_.cell_at(at);
@@ -164,7 +164,7 @@ class OcclusionClipper {
     }
     return no_index;
   }
-  /// Whether an outline is hidden, if `hider` hides the point `at`.
+  /// Returns whether an outline is hidden, given that `hider` hides the point `at`.
   OccluderUnion::Found spread(std::size_t slot, Outline outline, std::uint32_t hider, const glm::dvec2& at) {
     // The hider may have been found for a point next to `at`.
     if (!is_within(screen_.outline(hider), at, 0)) return OccluderUnion::Found::unknown;
@@ -196,8 +196,8 @@ class OcclusionClipper {
   [[nodiscard]] bool may_hide(std::size_t slot, std::size_t cover) const {
     return screen_.is_occluder(cover) && (!is_behind_ || is_behind_(screen_.place(slot), screen_.place(cover)));
   }
-  /// Boxes that overlap meet in several cells. The first of these is the one in which the later box begins, on each
-  /// axis.
+  /// Returns whether (x, y) is the first of the cells in which two boxes meet. On each axis, this is the cell in which
+  /// the later of the two boxes begins.
   [[nodiscard]] bool is_first_meeting(const PieceGrid::Range& cells, const PolygonExtent& cover, int x, int y) const {
     const PieceGrid::Range other = screen_.grid().range(cover);
     return x == std::max(cells.first_x, other.first_x) && y == std::max(cells.first_y, other.first_y);
@@ -211,7 +211,7 @@ class OcclusionClipper {
   OutlineList seen_;
 };
 
-/// Whether one piece is surely before another wherever they overlap on the screen.
+/// Returns whether one piece is certainly in front of another wherever they overlap on the screen.
 bool is_before(const Pieces& pieces, std::uint32_t piece, std::uint32_t other) {
   if (pieces.extent(piece).farthest <= pieces.extent(other).nearest) return true;
   bool is_flat = false;
@@ -251,7 +251,7 @@ struct PartList {
 Unhidden without_hidden(const Pieces& pieces, const std::vector<std::uint32_t>& members, const View& view,
                         const Occluders& occluders, PaintEffort& effort) {
   const Execution& execution = effort.execution();
-  // The nearest piece comes last, so a piece that is before another mostly comes after it.
+  // The nearest piece comes last, so a piece that is in front of another mostly comes after it.
   std::vector<std::uint32_t> sorted = members;
   sort_by_nearest(pieces, sorted, execution);
   const ScreenPolygons screen(pieces, sorted, view, occluders);

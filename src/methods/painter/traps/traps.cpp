@@ -18,16 +18,18 @@
 namespace frontmost::painter_detail {
 namespace {
 
-/// Distance at which a strip begins from a corner that it does not go around: relative to its height, but at most this
-/// share of the way to the next knot.
+/// A strip that does not go around a corner begins at a distance from it: kInset times the strip's height, but at most
+/// the share kMostInset of the way to the next knot.
 constexpr double kInset = 0.5, kMostInset = 0.45;
 
-/// Pixels. A part of a side that ends this close to the end of the whole side ends there: both may have been rounded.
+/// In pixels. A part of a side ends where the whole side ends if their ends are this close, because both may have been
+/// rounded.
 constexpr double kAtEnd = 1.0 / 1024;
 
 bool is_at(const glm::dvec2& a, const glm::dvec2& b) { return glm::length(a - b) <= kAtEnd; }
 
-/// A strip that ends at a corner ends before it: otherwise its rim would run along open places around the corner.
+/// Returns the knot at which a strip ends before a corner. If the strip ended at the corner, its rim would run along
+/// open places around the corner.
 TrapKnot inset(const TrapKnot& end, const TrapKnot& beside) {
   const double way = beside.along - end.along, part = std::min(kInset * end.height / std::abs(way), kMostInset);
   return {end.along + part * way, end.height + part * (beside.height - end.height)};
@@ -44,7 +46,7 @@ void write_whole(const TrapList& list, const Trap& trap, std::vector<glm::dvec2>
   for (std::size_t i = 0; i < knots.size(); ++i) {
     const bool is_first = i == 0, is_last = i + 1 == knots.size(), is_end = is_first || is_last;
     const double reach = is_first ? trap.at_from.reach : is_last ? trap.at_to.reach : 0;
-    // The knot lies on the side, or on the way around the corner.
+    // A knot on the side, or on the way around the corner, is left out.
     if (is_end && (knots[i].height < least_trap_height || knots[i].height == reach)) continue;
     const TrapKnot knot = is_end && reach == 0 ? inset(knots[i], knots[is_first ? 1 : i - 1]) : knots[i];
     corners.push_back(trap.from + along * knot.along + out * knot.height);
@@ -71,7 +73,7 @@ void cut_beginning(std::vector<glm::dvec2>& corners, std::size_t first, const gl
   corners.insert(corners.begin() + std::ptrdiff_t(first), crossing);
 }
 
-/// Writes the corners of a strip that follow `from` on the way to `to`, a part of its side.
+/// Writes the corners of a strip beside the part of its side that goes from `from` to `to`.
 void write_trap(const TrapList& list, const Trap& trap, const glm::dvec2& from, const glm::dvec2& to,
                 std::vector<glm::dvec2>& corners) {
   const std::size_t first = corners.size();
@@ -85,19 +87,21 @@ void write_trap(const TrapList& list, const Trap& trap, const glm::dvec2& from, 
   turn_around();
 }
 
-/// Whether the strips of two consecutive sides go around the corner between them: the end of the first coincides with
-/// the beginning of the second.
+/// Returns whether the strips of two consecutive sides go around the corner between them: the end of the first then
+/// coincides with the beginning of the second.
 bool go_around(const Trap& first, const Trap& second, const glm::dvec2& corner) {
   return second.at_from.reach > 0 && first.polygon == second.polygon && is_at(corner, second.from);
 }
 
-/// A polygon in more cells of the grid may have thousands of others around it: each outline then has a list of its own.
+/// A polygon in more cells of the grid may have thousands of others around it, so occluders are then listed for each
+/// outline anew.
 constexpr int kMostCells = 64;
-/// The most later polygons of a cell, from the front-most on, that are tried as covers of a polygon's surroundings: a
-/// stack of n planes would take n * n steps. A trap that the first 4,096 do not hide is not made.
+/// The most later polygons of a cell, from the front-most on, that are tried as covers of a polygon's surroundings.
+/// Without a limit, a stack of n planes would take n * n steps. A trap that the first 4,096 do not hide is not made.
 constexpr std::size_t kMostHiders = 4096;
 
-/// Whether an outline has points next to the outer side of a way, at least OutlineClipper::thin away from it.
+/// Returns whether an outline lies next to the outer side of a way, and has points more than OutlineClipper::thin away
+/// from it.
 bool is_beside(Outline outline, const glm::dvec2& from, const glm::dvec2& way) {
   const double length = glm::length(way), thin = OutlineClipper::thin * length;
   double near = std::numeric_limits<double>::infinity(), far = -near, first = near, last = -near;
@@ -112,9 +116,10 @@ bool is_beside(Outline outline, const glm::dvec2& from, const glm::dvec2& way) {
   return near <= thin && far > thin && first < length * length && last > 0;
 }
 
-/// Answers questions about one polygon after another. A trap is hidden by occluders that are painted after the polygon,
-/// and by occluders of the polygon's own group wherever they are in the order, because they look the same. They are
-/// listed once for all questions about a polygon, and most polygons have few. Not for several threads at once.
+/// Finds the occluders around one polygon after another. A trap is hidden by occluders that are painted after the
+/// polygon, and by occluders of the polygon's own group wherever they are in the order, because they look the same. The
+/// occluders around a polygon are listed once for all questions about it, and most polygons have few. Not for several
+/// threads at once.
 class NearbyOccluders {
  public:
   NearbyOccluders(const ScreenPolygons& screen, const Adjacency& adjacency, PaintEffort& effort)
@@ -130,22 +135,22 @@ class NearbyOccluders {
     is_listed_ = (cells.last_x - cells.first_x + 1) * (cells.last_y - cells.first_y + 1) <= kMostCells;
     if (is_listed_) list(box);
   }
-  /// Whether another polygon that has an area and hides nothing beyond it shares this side.
+  /// Returns whether this side is shared with another polygon that has an area and hides nothing beyond the side.
   [[nodiscard]] bool are_open_beside(std::size_t side) const {
     const std::uint32_t across = adjacency_.across(screen_.first_corner(slot_) + side);
     if (across == no_index) return false;
     const bool may_hide = screen_.place(across) >= screen_.first_place(slot_) && screen_.is_occluder(across);
-    // Other polygons begin beyond a polygon without an area.
+    // If the polygon across has no area, other polygons begin beyond it.
     return across == slot_ || (!may_hide && !is_flat(screen_.outline(across)));
   }
-  /// Whether anything hides points on the outer side of a side of the polygon, next to it.
+  /// Returns whether anything hides points next to a side of the polygon, on its outer side.
   [[nodiscard]] bool hide_beside(const glm::dvec2& from, const glm::dvec2& to) {
     PolygonExtent box{glm::min(glm::vec2(from), glm::vec2(to)), glm::max(glm::vec2(from), glm::vec2(to)), 0, 0};
     box.low -= float(2 * OutlineClipper::thin);
     box.high += float(2 * OutlineClipper::thin);
     return any_of(box, [&](const Hider& hider) { return is_beside(screen_.outline(hider.slot), from, to - from); });
   }
-  /// The parts of a convex outline within reach that are not hidden; valid until the next call.
+  /// Returns the parts of a convex outline within reach that are not hidden; valid until the next call.
   [[nodiscard]] const OutlineClipper& open_parts(Outline outline) {
     cutter_.begin(outline);
     any_of(box_of(outline), [&](const Hider& hider) {
@@ -158,7 +163,7 @@ class NearbyOccluders {
 
  private:
   struct Hider {
-    glm::vec2 low, high;  ///< the box around it, in pixels
+    glm::vec2 low, high;  ///< the box around its outline, in pixels
     std::uint32_t slot;
   };
   /// Sets hiders_ to occluders whose boxes overlap `box`.
@@ -210,12 +215,12 @@ class NearbyOccluders {
 
 /// Heights change by at most this much for every pixel along a side.
 constexpr double kSteepest = 1;
-/// A trap ends this many pixels before open parts above it, or this share of the way to them.
+/// A trap ends this many pixels below open parts above it, or by this share of the way to them if that is less.
 constexpr double kProfileMargin = 1, kProfileMarginPart = 0.6;
 /// The least area that a knot must gain, relative to the square of the greatest height.
 constexpr double kLeastGain = 1.0 / 16;
 
-/// Heights above a side, linear between knots. Not for several threads at once.
+/// Heights of a trap above a side, linear between knots. Not for several threads at once.
 class TrapProfile {
  public:
   /// Begins a side at `from` with the direction `way`, of unit length.
@@ -236,8 +241,8 @@ class TrapProfile {
       }
     }
   }
-  /// The hidden height, at most `most`, reduced towards open parts and some way from them. So no rim of a trap runs
-  /// along an outline: viewers would blend both, and the outline would grow bold.
+  /// Returns the height that is hidden along the side, at most `most`, reduced at open parts and near them. So no rim
+  /// of a trap runs along an outline: viewers would blend both, and the outline would grow bold.
   [[nodiscard]] const std::vector<TrapKnot>& fit(double length, double most) {
     place_knots(length, most);
     knots_.clear();
@@ -284,8 +289,8 @@ class TrapProfile {
     const auto is_same = [](double a, double b) { return b - a < OutlineClipper::thin; };
     places_.erase(std::unique(places_.begin(), places_.end() - 1, is_same), places_.end() - 1);
   }
-  /// Leaves out knots, the one of the least gain first, as long as the line past a knot is nowhere higher: every knot
-  /// is two numbers in the file.
+  /// Leaves out knots, those of the least gain first, because every knot is two numbers in the file. A knot stays if
+  /// the line past it would be higher anywhere.
   void leave_out(double least_gain) {
     while (knots_.size() > 2) {
       std::size_t best = 0;
@@ -311,9 +316,9 @@ class TrapProfile {
   std::vector<TrapKnot> knots_;
 };
 
-/// Shares of its width by which a trap goes around a corner; the first that fits is taken.
+/// Shares of the trap's width by which it may go around a corner; the first share that fits is taken.
 constexpr std::array kAround{1.0, 0.5, 0.25, 0.125};
-/// Pixels by which the hidden strip must be wider than a trap: rims that lie on each other grow bold.
+/// Pixels by which the hidden strip must be wider than a trap, because rims that lie on each other grow bold.
 constexpr double kBeyondTrap = 1;
 /// Length of a part of a side, in widths of its trap, and the most parts of a side.
 constexpr double kStrip = 8, kMostStrips = 256;
@@ -362,13 +367,14 @@ class TrapMaker {
     }
   }
 
-  /// Sets the height of a side's trap: as high as is hidden.
+  /// Sets the knots of a side's trap. Along the side, the trap is as high as the strip that other polygons hide there,
+  /// but no higher than `width_`.
   void fit(std::size_t number) {
     TrappedSide& side = sides_[number];
     side.knots.clear();
     const glm::dvec2 from = corner(number), to = corner(next(number)),
                      out = outwards(side.along) * (width_ + kBeyondTrap);
-    // Few other polygons are beside a part of a side.
+    // A long side is divided, because few other polygons are beside a part of it.
     const int parts = int(std::clamp(side.length / (kStrip * width_), 1.0, kMostStrips));
     if (side.length < OutlineClipper::thin || nearby_.are_open_beside(number)) return;
     if (parts == 1 && !nearby_.hide_beside(from, to)) return;
@@ -383,7 +389,7 @@ class TrapMaker {
     if (!std::all_of(knots.begin(), knots.end(), is_low)) side.knots = knots;
   }
 
-  /// How far the traps of both sides of a corner go around it; 0: not at all.
+  /// Returns how many pixels the traps of both sides of a corner go around it, or 0 if they do not.
   [[nodiscard]] double reach_around(std::size_t number) {
     const TrappedSide &to = sides_[before(number)], &from = sides_[number];
     if (to.knots.empty() || from.knots.empty()) return 0;
@@ -405,7 +411,7 @@ class TrapMaker {
     return 0;
   }
 
-  /// The parts of the outline in beside_ that are not hidden.
+  /// Returns the parts of the outline in beside_ that are not hidden.
   [[nodiscard]] const OutlineClipper& open_parts() {
     asked_.clear();
     for (const glm::dvec2& at : beside_) asked_.push_back({glm::dvec3(at, 1), true});
@@ -467,7 +473,7 @@ void write_outline(const TrapList& list, std::span<const TrappedCorner> outline,
     const std::size_t end = corners.size();
     if (trap) write_trap(list, *trap, from, to, corners);
     const bool is_written = corners.size() > end;
-    // The corner lies within both strips.
+    // The strips go around the corner. The corner itself, and one of their two equal ends there, are left out.
     if (is_written && before && go_around(*before, *trap, from))
       corners.erase(corners.begin() + std::ptrdiff_t(end) - 1, corners.begin() + std::ptrdiff_t(end) + 1);
     before = is_written ? trap : nullptr;

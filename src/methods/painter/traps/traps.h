@@ -21,7 +21,7 @@ struct TrapKnot {
 
 /// The end of a strip at a corner of its polygon.
 struct TrapEnd {
-  double reach = 0;  ///< pixels by which it goes around the corner with the next strip; 0: it ends before the corner
+  double reach = 0;  ///< pixels by which it goes around the corner with the next strip; 0 if it ends before the corner
   glm::dvec2 beyond{0};  ///< direction of the polygon's side beyond the corner, unit length
 };
 
@@ -37,7 +37,8 @@ struct Trap {
 /// Marks a side that has no strip.
 inline constexpr std::uint32_t no_trap = 0xFFFFFFFF;
 
-/// A corner of an outline, and the side from it to the next corner: all or a part of a polygon's side with this strip.
+/// A corner of an outline, and the strip of the side from it to the next corner. This side is all or a part of the
+/// strip's side.
 struct TrappedCorner {
   glm::dvec2 at{0};
   std::uint32_t trap = no_trap;  ///< index in TrapList::traps
@@ -56,7 +57,7 @@ struct TrapList {
   [[nodiscard]] std::span<const TrapKnot> knots_of(const Trap& trap) const {
     return {knots.data() + trap.first_knot, trap.knot_count};
   }
-  /// Sets `corners` to the corners of a polygon, which has this outline.
+  /// Sets `corners` to the corners of a polygon with this outline, and to the strips of its sides.
   void set_corners(std::size_t polygon, std::span<const glm::dvec2> outline,
                    std::vector<TrappedCorner>& corners) const {
     corners.clear();
@@ -73,30 +74,31 @@ struct TrapList {
   void add_polygon(const TrapList& other, std::size_t polygon);
 };
 
-/// The outward normal of a side, from its direction around the polygon; both of unit length.
+/// Returns the outward normal of a side from the side's direction around the polygon; both have unit length.
 [[nodiscard]] inline glm::dvec2 outwards(const glm::dvec2& way) { return {-way.y, way.x}; }
 
-/// A corner of a polygon, by the directions to it and from it, of unit length.
+/// A corner of a polygon, given by the directions of the sides to it and from it, of unit length.
 struct TrapCorner {
   glm::dvec2 to{0}, from{0};
 
-  /// Where two strips of a width meet, relative to the corner: on the bisector of the outer angle. A blunt corner has a
-  /// mitre. At a sharp corner a mitre would be too long, so both strips end on a line across.
+  /// Returns the point at which two strips of this width meet, relative to the corner. It lies on the bisector of the
+  /// outer angle. A blunt corner has a mitre. At a sharp corner a mitre would be too long, so both strips end on a line
+  /// across.
   [[nodiscard]] glm::dvec2 meeting_point(double width) const;
   [[nodiscard]] bool is_sharp() const { return glm::dot(to, from) < 0; }
 };
 
-/// Pixels: lower strips are left out.
+/// In pixels. Strips of less height are left out.
 inline constexpr double least_trap_height = 1.0 / 64;
 
 /// Appends the corners of a closed outline, and of the strips beside its sides. If only a part of a side is there, its
 /// strip is cut off beyond that part.
 void write_outline(const TrapList& list, std::span<const TrappedCorner> outline, std::vector<glm::dvec2>& corners);
 
-/// The traps of polygons in the order of painting. A polygon reaches under later polygons beside it by at most `width`
-/// pixels, as far as these or polygons of its own group hide the trap; the same holds around its corners. So the
-/// polygon that is painted first in a pixel covers all of it. Traps end a pixel below open places, or at two fifths of
-/// the way to them if that is less, so that outlines hardly grow bold. Cost as for visible_parts().
+/// Returns the traps of polygons that are in the order of painting. A trap reaches under later polygons by at most
+/// `width` pixels, beside sides and around corners, as far as later polygons or polygons of the same group hide it. So
+/// the polygon that is painted first in a pixel covers all of it. Traps end a pixel below open places, or at two fifths
+/// of the way to them if that is less, so that outlines hardly grow bold. Cost as for visible_parts().
 [[nodiscard]] TrapList make_traps(std::span<const ScreenPolygon> polygons, const View& view, double width,
                                   const Execution& execution);
 

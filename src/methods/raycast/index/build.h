@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Building a RayTree, and what moving one needs of it.
+// Building a RayTree, and the parts of it that moving triangles needs, too.
 #pragma once
 
 #include <vector>
@@ -20,14 +20,14 @@ struct LeafBox {
   return {{b.low[0], b.low[1], b.low[2]}, {b.high[0], b.high[1], b.high[2]}};
 }
 
-/// The bounds of the leaf's triangles; unused lanes do not count.
+/// Returns the bounds of the leaf's triangles, without unused lanes. `number` is the index of the leaf.
 [[nodiscard]] LeafBox box_of(const RayLeaf& leaf, std::uint32_t number);
 
-/// The tree of the surfaces.
+/// Makes the tree of the surfaces.
 [[nodiscard]] RayTree make_tree(const Surfaces& surfaces, const Execution& execution);
 
-/// Whether two vertices are the same. No ray meets such a triangle; Surfaces makes vertices the same to mark a triangle
-/// that is not finite.
+/// Returns whether two vertices are the same. No ray meets such a triangle. Surfaces marks triangles that are not
+/// finite by making their vertices the same.
 inline bool is_degenerate(const ClusterSet& set, std::size_t t) {
   return set.i0[t] == set.i1[t] || set.i1[t] == set.i2[t] || set.i2[t] == set.i0[t];
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds a tree of sixteen-wide leaves and nodes: triangles in the surfaces' spatial order are cut into sixteens, and
-// the binned surface area heuristic halves ranges of leaves, the range of the largest surface first, until a node has
-// sixteen children. Parts of a fixed length are built by whichever thread is free, so the tree is the same for any
-// number of threads.
+// Builds a tree of sixteen-wide leaves and nodes. Triangles in the surfaces' spatial order are cut into leaves of
+// sixteen. The binned surface area heuristic then halves ranges of leaves, the range with the largest surface first,
+// until a node has sixteen children. Parts of a fixed length are built by whichever thread is free, so the tree is the
+// same for any number of threads.
 //
 //    leaves       [ 16 ][ 16 ][ 16 ][ 16 ] ...        clusters already are in spatial order
-//    copies       a a' a'' b c c' ...                 a' and a'' go: they have the vertices of a and higher ids
+//    copies       a a' a'' b c c' ...                 a' and a'' are removed: the vertices of a, higher ids
 //    regrouped    sixteen leaves at a time            so that each leaf is small: makes single rays 20 to 40 % and
 //                                                     views up to 10 % faster, and doubles the time of a build
-//    nodes        [ A  B | C | D ... ]                split at the least sum of surfaces, each times its leaves
+//    nodes        [ A  B | C | D ... ]                split where the sum of surface * leaves is least
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -42,7 +42,7 @@ namespace {
 constexpr std::size_t kClustersPerPart = 64;
 constexpr std::size_t kLeavesPerPart = 1024;
 
-/// Leaves that are yet to be filled; unused lanes of the last one are set.
+/// Returns leaves to be filled. The lanes of the last leaf are set, because some of them may stay unused.
 Buffer<RayLeaf> leaves_for(std::size_t triangle_count) {
   Buffer<RayLeaf> leaves((triangle_count + kRayLanes - 1) / kRayLanes);
   if (leaves.empty()) return leaves;
@@ -75,8 +75,9 @@ void fill(const ClusterSet& set, const Cluster& cluster, std::size_t& place, Buf
   }
 }
 
-/// Redistributes the triangles of a group of whole leaves: halves them by the middle triangle along the longest side of
-/// their centres' box, until sixteen are left. The spatial order alone makes leaves that bend around its turns.
+/// Redistributes the triangles of a group of whole leaves: halves the group at the middle triangle along the longest
+/// side of the box of their centres, until sixteen triangles are left. The spatial order alone makes leaves that bend
+/// around the turns of its curve.
 class Regrouping {
  public:
   static constexpr std::size_t kLeaves = 16;
@@ -131,11 +132,12 @@ class Regrouping {
 };
 
 constexpr std::size_t kTrianglesPerPart = 16384;
-/// Fewer copies cost views next to nothing, and an index without a second tree can be refitted.
+/// So few copies cost views next to nothing and stay in the tree, because only an index without a second tree can be
+/// refitted.
 constexpr std::size_t kFew = 4096;
 
-/// Whether the triangle at `place` repeats the one before it with a higher id: both are met together at the same depth,
-/// and the lower id is seen. A double-sided triangle is no copy of a one-sided triangle.
+/// Returns whether the triangle at `place` has the vertices of the triangle before it and a higher id. Both are met
+/// together at the same depth, and the lower id is seen. A double-sided triangle is no copy of a one-sided triangle.
 bool is_copy(const RayTree& tree, std::size_t place) {
   const RayLeaf &one = tree.leaves[(place - 1) / kRayLanes], &again = tree.leaves[place / kRayLanes];
   const std::size_t a = (place - 1) % kRayLanes, b = place % kRayLanes;
@@ -188,10 +190,9 @@ void fill_leaves(const Surfaces& surfaces, RayTree& tree, const Execution& execu
   });
 }
 
-/// Moves copies of triangles to a tree of their own, of which only the leaves are filled, if thousands of triangles
-/// repeat the ones before them, as objects placed a million times in one place do. Leaves of `tree` are in the
-/// surfaces' spatial order, in which copies follow each other. \returns null, and changes nothing, if there are few
-/// copies.
+/// Moves copies of triangles to a tree of their own if there are thousands, as when an object is placed a million times
+/// in one place. Only the leaves of the new tree are filled. Leaves of `tree` are in the surfaces' spatial order, in
+/// which copies follow each other. \returns the new tree; null, with nothing changed, if there are few copies.
 std::shared_ptr<RayTree> take_copies(RayTree& tree, const Execution& execution) {
   // Copies with holes may be open where the original is not.
   if (tree.cutouts || tree.triangle_count <= kFew) return nullptr;
@@ -224,8 +225,8 @@ std::vector<LeafBox> group_leaves(RayTree& tree, const Execution& execution) {
 }
 
 constexpr int kBins = 16;
-/// Leaves of a piece. Compared with splitting everything by area, views differ by less than the noise of 3 %, and two
-/// threads build in three quarters of the time.
+/// Number of leaves of a piece, which one thread builds. Compared with splitting all leaves by area, the speed of views
+/// differs by less than the noise of 3 %, and two threads build in three quarters of the time.
 constexpr std::size_t kPieceLeaves = 2048;
 /// Fewer leaves than this are halved in place: their order already is a good one, and bins cost more than they save.
 constexpr std::size_t kBinFrom = 4;
@@ -267,7 +268,7 @@ struct Binning {
   explicit Binning(const Box& centres) : origin(centres.low) {
     for (int axis = 0; axis < 3; ++axis) {
       const float extent = centres.high[axis] - centres.low[axis];
-      // The extent is zero, not finite, or so small that the scale overflows: all centres are in the first bin.
+      // If the extent is zero, not finite, or so small that the scale overflows, all centres fall into the first bin.
       const float wanted = kBins * 0.9999f / extent;
       scale[axis] = extent > 0 && wanted < std::numeric_limits<float>::max() ? wanted : 0.0f;
     }
@@ -307,7 +308,8 @@ class NodeBuilder {
  public:
   explicit NodeBuilder(std::vector<LeafBox>& boxes) : boxes_(boxes) {}
 
-  /// \returns up to sixteen ranges: splits the range of the largest surface until none can be split.
+  /// \returns up to sixteen ranges. Splits the range with the largest surface until there are sixteen, or none can be
+  /// split.
   std::vector<BoxRange> children_of(const BoxRange& range) {
     std::vector<BoxRange> ranges{range};
     ranges.reserve(kRayLanes);
@@ -315,8 +317,7 @@ class NodeBuilder {
       std::size_t largest = ranges.size();
       float most = -1;
       for (std::size_t i = 0; i < ranges.size(); ++i) {
-        // Areas that overflow count as equal. A NaN area loses to any other, but the first splittable range is taken
-        // anyway.
+        // Areas that overflow count as equal. The first range that can be split is taken even if its area is NaN.
         const float area = half_area(ranges[i].box);
         if (ranges[i].size() > 1 && (largest == ranges.size() || area > most)) largest = i, most = area;
       }
@@ -344,7 +345,7 @@ class NodeBuilder {
     return {range_of(range.begin, middle), range_of(middle, range.end)};
   }
 
-  /// \returns an empty range if all centres are in one place, or areas exceed the range of floats.
+  /// \returns empty ranges if all centres are in one place, or areas exceed the range of floats.
   std::pair<BoxRange, BoxRange> split_by_area(const BoxRange& range) {
     Box centres;
     for (std::size_t i = range.begin; i < range.end; ++i) centres.include(centre_of(boxes_[i]));

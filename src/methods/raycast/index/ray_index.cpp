@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// RayIndex: how it is built, and how it follows triangles that have moved. Leaves then keep their triangles and nodes
-// their children, and boxes are fitted anew from the leaves upwards.
+// Builds a RayIndex, and makes it follow triangles that have moved. When it follows, leaves keep their triangles and
+// nodes their children, and boxes are fitted anew from the leaves upwards.
 //
 //    refit()    clusters, as they moved --by id--> lanes of leaves --> boxes --> nodes, from the last to the first
 //    follow()   leaves that hold triangles of one instance --> boxes of these leaves --> nodes above
 //
-// If a triangle has no place in the old leaves, or one has gone, the index is built anew.
+// The index is built anew if a triangle has no place in the old leaves, or if a triangle of the old leaves is gone.
 
 #include <algorithm>
 #include <atomic>
@@ -28,8 +28,8 @@ std::size_t byte_count(const RayTree& tree) {
          (tree.copies ? byte_count(*tree.copies) : 0) + (tree.links ? byte_count(*tree.links) : 0);
 }
 
-/// Guards a tree while it is changed in place. An error halfway would leave triangles of two scenes, and holes of one;
-/// the destructor then empties the tree.
+/// Guards a tree while it is changed in place. An error halfway would leave the triangles of two scenes with the holes
+/// of one, so the destructor empties the tree unless the change is complete.
 class TreeChange {
  public:
   explicit TreeChange(RayTree& tree) : tree_(tree) {}
@@ -45,7 +45,7 @@ class TreeChange {
   bool is_complete_ = false;
 };
 
-/// The bounds of a node's children.
+/// Returns the bounds of a node's children.
 Box box_of(const RayNode& node) {
   Box box;
   for (std::size_t lane = 0; lane < node.count; ++lane)
@@ -56,7 +56,7 @@ Box box_of(const RayNode& node) {
 
 constexpr std::size_t kRefitLeavesPerPart = 512, kRefitClustersPerPart = 64;
 
-/// The places of a tree's triangles, by id: leaf * 16 + lane, or no_index.
+/// Returns the places of a tree's triangles, by id. A place is leaf * 16 + lane, or no_index.
 Buffer<std::uint32_t> places_of(const RayTree& tree, std::size_t id_count, const Execution& execution) {
   Buffer<std::uint32_t> places(id_count, no_index);
   parallel_for(execution, tree.leaves.size(), kRefitLeavesPerPart, [&](std::size_t begin, std::size_t end) {
@@ -103,7 +103,7 @@ void fit_nodes(const std::vector<LeafBox>& boxes, RayTree& tree) {
 /// has other triangles; the tree is then empty, as after an error.
 bool refit_tree(const Surfaces& surfaces, RayTree& tree, const Execution& execution) {
   TreeChange change(tree);
-  // Copies may move apart.
+  // Copies may have moved apart.
   if (tree.copies) return false;
   const ClusterSet& set = cluster_set(surfaces, execution);
   tree.cutouts = set.cutouts;
@@ -151,7 +151,7 @@ void fit_above(RayTree& tree, std::uint32_t leaf, Box box) {
   tree.bounds = box;
 }
 
-/// Moves an instance's triangles in a leaf. \returns how many, or no_index if a triangle is not finite any more.
+/// Moves an instance's triangles in a leaf. \returns their number, or no_index if a triangle is not finite any more.
 std::uint32_t move_triangles(const PlacedScene& placed, std::uint32_t instance, RayLeaf& leaf) {
   const Instance& it = placed.scene->instances[instance];
   const Mesh& mesh = placed.scene->meshes[it.mesh];
@@ -171,7 +171,7 @@ std::uint32_t move_triangles(const PlacedScene& placed, std::uint32_t instance, 
   return count;
 }
 
-/// The triangles of a mesh with finite vertices, no two of which are the same.
+/// Returns the number of triangles of a mesh whose vertices are finite and all different.
 std::uint32_t count_met(const Mesh& mesh) {
   std::uint32_t count = 0;
   for (const glm::uvec3& c : mesh.triangles) {

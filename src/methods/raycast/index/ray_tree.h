@@ -25,7 +25,7 @@ namespace frontmost {
 /// Boxes or triangles side by side: the lanes of one vector of the widest instruction set.
 inline constexpr std::size_t kRayLanes = 16;
 
-/// A child is the number of a leaf with this bit set, or the number of a node.
+/// A child is the index of a leaf, with this bit set, or the index of a node.
 inline constexpr std::uint32_t kLeafBit = 0x80000000u;
 
 /// World-space boxes of `count` children. Unused lanes hold zeros.
@@ -53,7 +53,7 @@ struct alignas(64) RayLeaf {
     for (std::size_t k = 0; k < 3; ++k) corners[k] = {corner[k][0][lane], corner[k][1][lane], corner[k][2][lane]};
     return corners;
   }
-  /// Sets a lane to a triangle of a leaf.
+  /// Copies a triangle from a lane of another leaf.
   void copy(std::size_t lane, const RayLeaf& from, std::size_t from_lane) {
     for (std::size_t k = 0; k < 3; ++k)
       for (std::size_t axis = 0; axis < 3; ++axis) corner[k][axis][lane] = from.corner[k][axis][from_lane];
@@ -61,7 +61,7 @@ struct alignas(64) RayLeaf {
   }
 };
 
-/// Links from children to parents, for instances that move. node * 16 + lane, or no_index above the root.
+/// Links from children to parents, for instances that move. A link is node * 16 + lane, or no_index at the root.
 struct RayLinks {
   std::vector<std::uint32_t> above_node;
   std::vector<std::uint32_t> above_leaf;
@@ -75,10 +75,11 @@ struct RayTree {
   std::uint32_t triangle_count = 0;
   std::uint32_t depth = 0;                 ///< nodes from the root to the deepest leaf
   Box bounds;                              ///< around the triangles
-  std::shared_ptr<const Cutouts> cutouts;  ///< null where no triangle has holes
+  std::shared_ptr<const Cutouts> cutouts;  ///< null if no triangle has holes
   std::shared_ptr<const MaterialSides> sides;
-  /// Copies: each has the vertices of a triangle of this tree, in their order, and a higher id. So queries for the
-  /// nearest hit, or for any hit, do without copies. Null if none were taken out.
+  /// A second tree, which holds the copies that were removed from this tree. Each copy has the vertices of a triangle
+  /// of this tree, in the same order, and a higher id. Queries for the nearest hit, or for any hit, do not need the
+  /// copies. Null if no copies were removed.
   std::shared_ptr<RayTree> copies;
   std::optional<RayLinks> links;  ///< made when first needed
 

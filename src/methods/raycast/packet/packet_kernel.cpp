@@ -46,7 +46,8 @@ class PacketHits {
     packet_end_ = all;
   }
 
-  /// Ends of each block and of the packet: triangles that begin beyond an end are met first by no ray.
+  /// Distances beyond which no ray of a block, or of the packet, meets its nearest triangle. So a triangle that begins
+  /// beyond such a distance need not be tested.
   [[nodiscard]] HWY_INLINE const float* block_ends() const { return block_end_; }
   [[nodiscard]] HWY_INLINE float packet_end() const { return packet_end_; }
 
@@ -69,7 +70,7 @@ class PacketHits {
 
  private:
   static constexpr std::uint64_t kAllLanes = (std::uint64_t(1) << kQueryLanes) - 1;
-  /// Margin, as ends are compared with values that were rounded differently.
+  /// A margin for comparing ends with values that were rounded differently.
   static constexpr float kBeyond = 1 + 0x1p-20f;
 
   /// One triangle, in the form that all rays share.
@@ -88,7 +89,7 @@ class PacketHits {
     return e;
   }
 
-  /// \returns true if the triangle is the nearest so far of some ray.
+  /// Tests the rays against one triangle. \returns true if the triangle is the nearest so far of some ray.
   HWY_INLINE bool MeetTriangle(const RayLeaf& leaf, const PacketTriangles& t, std::size_t first, std::size_t index) {
     const std::size_t lane = first + index;
     const Edges edges = EdgesOf(t, lane);
@@ -166,7 +167,8 @@ class PacketHits {
     }
   }
 
-  /// Keeps only notes of the nearest triangle of some ray. Rays with an uncertain nearest triangle must be cast again.
+  /// Keeps only the notes of triangles that are the nearest of some ray. Rays whose nearest triangle is uncertain must
+  /// then be cast again.
   void Forget() {
     is_complete_ = false;
     std::array<std::int32_t, ScanScratch::kMostNotes> moved;
@@ -184,7 +186,7 @@ class PacketHits {
     note_count_ = count;
   }
 
-  /// Rays whose nearest triangle is certain.
+  /// Returns the rays whose nearest triangle is certain.
   [[nodiscard]] std::uint64_t SingleRays() const {
     const QF d;
     std::uint64_t single = 0;
@@ -197,7 +199,7 @@ class PacketHits {
     return single;
   }
 
-  /// Rays that may meet anything.
+  /// Returns the rays that may meet anything.
   [[nodiscard]] std::uint64_t SeenRays() const {
     std::uint64_t seen = 0;
     for (std::size_t i = 0; i < kScanRays; ++i) seen |= std::uint64_t(note_[i] >= 0 || other_[i] < kFloatInfinity) << i;
@@ -211,7 +213,8 @@ class PacketHits {
   using PF = hn::Rebind<float, PD>;
   static constexpr std::size_t kDoubleLanes = hn::MaxLanes(PD());
 
-  /// The vertices of the nearest triangles, and the rays that meet them. Rays that are not single carry any triangle.
+  /// The vertices of each ray's nearest triangle. Rays whose nearest triangle is uncertain have the vertices of any
+  /// triangle.
   struct Winners {
     alignas(64) float corner[3][3][kScanRays];
   };
@@ -240,7 +243,7 @@ class PacketHits {
     }
   }
 
-  /// place_along() times the direction's length, in its order of operations.
+  /// Returns place_along() times the direction's length, with the same operations in the same order.
   [[nodiscard]] HWY_INLINE hn::Vec<PF> RangeOf(const ScanPacket& packet, const Winners& winners,
                                                std::size_t first) const {
     const PD d;
@@ -276,7 +279,7 @@ class PacketHits {
     return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
   }
 
-  /// Answers one ray by the definition.
+  /// Answers one ray by meet(), the definition of a hit.
   void Settle(ScanPacket& packet, std::size_t ray, Isa isa) const {
     const Query query = packet.query_of(ray);
     RayHit nearest;
@@ -351,7 +354,7 @@ class PacketWalker {
   PacketHits hits_;
 };
 
-/// \returns false if the rays must be cast one by one.
+/// Casts the rays of a packet together. \returns false if the rays must be cast one by one.
 bool CastTogether(const RayTree& tree, ScanPacket& packet, ScanScratch& scratch, Isa isa) {
   PacketCone cone;
   if (!cone.Take(packet)) return false;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pyramid of a packet's rays, which boxes and triangles lie beside it, and the others in the form that rays test.
+// Finds the pyramid of a packet's rays, leaves out boxes and triangles that lie beside it, and prepares the other
+// triangles for tests against rays.
 //
 //          u |      . high u        The axis z is the one that the rays move most along. Every ray is a point (u, v) of
 //            |   .   /              the plane at z = 1, its slopes, and the packet is a rectangle of that plane. Boxes
@@ -33,17 +34,17 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Blocks of a packet's rays in the order of the grid: the rays of a block are tested together.
 constexpr std::size_t kBlockRays = 16, kScanBlocks = kScanRays / kBlockRays;
 
-/// Slopes of neighbouring rays.
+/// The range of the slopes of some neighbouring rays.
 struct SlopeRange {
   float low_u, high_u, low_v, high_v;
 };
 
-/// Bound of the rounding of a unit: some roundings of each of up to three terms, and as much again.
+/// Bound on the rounding error of coordinates of size 1: some roundings of up to three terms, and as much again.
 constexpr float kConeError = 0x1p-20f;
 
 class PacketCone {
  public:
-  /// \returns false if the rays spread too widely to be cast together.
+  /// Takes the rays of a packet. \returns false if they spread too widely to be cast together.
   bool Take(const ScanPacket& packet) {
     origin_ = packet.origin;
     valid_ = ValidRays(packet);
@@ -56,7 +57,7 @@ class PacketCone {
   [[nodiscard]] float sign() const { return sign_; }
   /// A bit for each ray that has a direction.
   [[nodiscard]] std::uint64_t valid() const { return valid_; }
-  /// An upper bound of all slopes, and at least 1.
+  /// An upper bound of the sizes of all slopes; at least 1.
   [[nodiscard]] float steepest() const { return steepest_; }
   [[nodiscard]] const SlopeRange& range() const { return range_; }
   [[nodiscard]] const SlopeRange& range(std::size_t block) const { return block_range_[block]; }
@@ -69,7 +70,8 @@ class PacketCone {
     return hn::Sub(hn::Load(d, from), hn::Set(d, origin_[axis]));
   }
 
-  /// Boxes of a node that no ray meets before its block's end, and the least place that each box reaches.
+  /// The boxes of a node that no ray meets before its block's end, and the least place along the axis that each box
+  /// reaches.
   struct Missed {
     QM boxes;
     QV place;
@@ -80,7 +82,7 @@ class PacketCone {
     QV high_z = FromEye((sign_ > 0 ? node.high : node.low)[z_] + first, z_);
     if (sign_ < 0) low_z = hn::Neg(low_z), high_z = hn::Neg(high_z);
     const QV pad = hn::Mul(hn::Max(hn::Abs(low_z), hn::Abs(high_z)), hn::Set(d, kConeError));
-    // Parts behind the eye are not met; the place of the remaining part tells where it begins along the axis.
+    // The part of a box behind the eye is not met. The remaining part reaches from `near` to `far` along the axis.
     const QV near = hn::Max(hn::Sub(low_z, pad), hn::Zero(d)), far = hn::Add(high_z, pad);
     const Sides u = SidesOf(node, first, u_, near, far), v = SidesOf(node, first, v_, near, far);
     QM met = hn::MaskFromVec(hn::Zero(d));
@@ -113,7 +115,7 @@ class PacketCone {
     return {hn::Sub(low, pad), hn::Add(high, pad), near, far};
   }
 
-  /// Boxes beside the rays: between near and far along the axis the rays lie between low * z and high * z.
+  /// Returns the boxes beside the rays. At a place z between near and far, the rays lie between low * z and high * z.
   [[nodiscard]] HWY_INLINE QM Beside(const Sides& box, const Interval& slopes) const {
     const QF d;
     const QV least = hn::Mul(slopes.low >= 0 ? box.near : box.far, hn::Set(d, slopes.low));
@@ -121,7 +123,7 @@ class PacketCone {
     return hn::Or(hn::Gt(box.low, most), hn::Lt(box.high, least));
   }
 
-  /// is_valid(), a bit for each ray.
+  /// Returns a bit for each ray: whether is_valid() holds.
   [[nodiscard]] static std::uint64_t ValidRays(const ScanPacket& packet) {
     if (!is_finite(packet.origin)) return 0;
     const QF d;
@@ -140,7 +142,7 @@ class PacketCone {
     return valid;
   }
 
-  /// Takes the greatest coordinate of a middle ray as the axis. \returns true if every ray moves forwards along it.
+  /// Chooses the axis along which a middle ray moves most. \returns true if every ray moves forwards along it.
   bool SetAxis(const ScanPacket& packet) {
     const std::size_t lowest = hwy::Num0BitsBelowLS1Bit_Nonzero64(valid_), middle = packet.count / 2;
     const std::size_t some = valid_ >> middle & 1 ? middle : lowest;
@@ -148,7 +150,7 @@ class PacketCone {
     z_ = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     u_ = (z_ + 1) % 3, v_ = (z_ + 2) % 3;
     sign_ = direction[z_] < 0 ? -1.0f : 1.0f;
-    // Unused rays take the place of a valid ray.
+    // Unused rays are replaced by copies of a valid ray.
     const QF d;
     QM ahead = hn::FirstN(d, kQueryLanes);
     for (std::size_t first = 0; first < kScanRays; first += kQueryLanes) {
@@ -197,9 +199,10 @@ class PacketCone {
   alignas(64) float slope_u_[kScanRays], slope_v_[kScanRays];
 };
 
-/// The triangles of a leaf, laid out for broadcasting to rays.
+/// The triangles of a leaf, laid out so that one triangle can be tested against a vector of rays.
 struct PacketTriangles {
-  alignas(64) float normal[3][3][kRayLanes];  ///< [edge][u, v, z]; edge k lies opposite vertex k
+  alignas(64) float normal[3][3][kRayLanes];  ///< normals of the planes of the eye and an edge: [edge][u, v, z]; edge k
+                                              ///< lies opposite vertex k
   alignas(64) float z[3][kRayLanes];          ///< vertices' places along the packet's axis
   alignas(64) float low_z[kRayLanes], high_z[kRayLanes];
   alignas(64) float bound[kRayLanes];  ///< error bound of all turns; infinite if floats do not suffice
@@ -212,8 +215,8 @@ class TrianglePlacer {
   TrianglePlacer(const PacketCone& cone, const RayLeaf& leaf, PacketTriangles& to)
       : cone_(cone), leaf_(leaf), to_(to) {}
 
-  /// Places a vector of triangles, and finds which blocks, whose farthest ends are `ends`, may meet them. \returns the
-  /// triangles that any block may meet.
+  /// Prepares a vector of triangles, and finds the blocks that may meet them. Triangles that begin beyond the `ends` of
+  /// a block are not met. \returns the triangles that any block may meet.
   HWY_INLINE std::uint32_t Place(std::size_t first, const float* ends) {
     const QF d;
     QV at[3][3], low[3], high[3];
@@ -223,7 +226,7 @@ class TrianglePlacer {
       high[axis] = hn::Max(hn::Max(at[0][axis], at[1][axis]), at[2][axis]);
     }
     const QV size = hn::Max(hn::Max(Size(low[0], high[0]), Size(low[1], high[1])), Size(low[2], high[2]));
-    // If products may leave the range of floats, the triangle may be met anywhere.
+    // If products may leave the range of floats, the triangle counts as one that may be met anywhere.
     const QM serves = hn::Lt(size, hn::Set(d, 0x1p40f));
     const QV error = hn::IfThenElseZero(serves, hn::Mul(Size(low[2], high[2]), hn::Set(d, kConeError)));
     const QV all = hn::Set(d, kFloatInfinity);
@@ -252,13 +255,13 @@ class TrianglePlacer {
     }
   }
 
-  /// The edge is a difference of world coordinates, where it is rounded least.
+  /// Returns a coordinate of an edge as a difference of world coordinates, because this is rounded least.
   [[nodiscard]] HWY_INLINE QV EdgeAlong(std::size_t first, int from, int to, int axis) const {
     const QF d;
     return hn::Sub(hn::Load(d, leaf_.corner[to][axis] + first), hn::Load(d, leaf_.corner[from][axis] + first));
   }
 
-  /// \returns the triangles that all rays of the packet pass on the outer side of an edge.
+  /// Prepares the edges. \returns the triangles that all rays of the packet miss, as Outside() finds them.
   HWY_INLINE QM PlaceEdges(std::size_t first, const QV (&at)[3][3], QV size, QM serves) const {
     const QF d;
     QV normal[3][3], longest = hn::Zero(d);
@@ -273,16 +276,17 @@ class TrianglePlacer {
       for (int axis = 0; axis < 3; ++axis) hn::Store(normal[k][axis], d, to_.normal[k][axis] + first);
       longest = hn::Max(longest, hn::Max(hn::Max(hn::Abs(u), hn::Abs(v)), hn::Abs(z)));
     }
-    // With A the largest coordinate, S the longest edge's and M the steepest slope, a turn is a sum of three products
-    // of slopes and differences of products. It is wrong by at most 42 half units in the last place of A S M. The last
-    // term stands for underflow.
+    // Let A be the largest coordinate, S the largest coordinate of an edge, and M the steepest slope. A turn is a sum
+    // of three products of a slope and a difference of products. It is wrong by at most 42 half units in the last place
+    // of A S M. The last term is for underflow.
     const QV scale = hn::Mul(hn::Mul(size, longest), hn::Set(d, cone_.steepest() * 0x1p-18f));
     const QV bound = hn::IfThenElse(serves, hn::Add(scale, hn::Set(d, 0x1p-100f)), hn::Set(d, kFloatInfinity));
     hn::Store(bound, d, to_.bound + first);
     return Outside(normal, bound);
   }
 
-  /// If the sum of the turns has one sign for all rays, so has every turn of a ray that meets the triangle.
+  /// Returns the triangles that all rays miss. If the sum of the turns has one sign for all rays, a ray meets the
+  /// triangle only if every turn has this sign. So all rays miss it if the turns about one edge have the other sign.
   [[nodiscard]] HWY_INLINE QM Outside(const QV (&normal)[3][3], QV bound) const {
     const QF d;
     QV least = hn::Zero(d), most = hn::Zero(d);
@@ -310,7 +314,8 @@ class TrianglePlacer {
             hn::Add(normal[2], hn::Add(hn::Max(a, b), hn::Max(e, f)))};
   }
 
-  /// Finds the slopes' rectangle of each triangle before the eye, and the blocks that meet the rectangle.
+  /// Finds the rectangle of slopes of each triangle in front of the eye, and the blocks of rays that meet this
+  /// rectangle. \returns the triangles that any block may meet.
   HWY_INLINE std::uint32_t PlaceOutlines(const QV (&at)[3][3], QV nearest, QM kept, const float* ends) const {
     const QF d;
     const QV one = hn::Set(d, 1.0f);
@@ -339,7 +344,7 @@ class TrianglePlacer {
     return any;
   }
 
-  /// \returns the remaining triangles.
+  /// Removes triangles from all blocks. \returns the remaining triangles.
   HWY_INLINE std::uint32_t LeaveOut(QM triangles) const {
     const auto kept = ~std::uint32_t(frontmost::HWY_NAMESPACE::BitsOf(QF(), triangles));
     std::uint32_t any = 0;

@@ -42,7 +42,7 @@ struct NotedTriangle {
 
 /// Buffers of one thread.
 struct ScanScratch {
-  /// More than twice the number of rays, of which each keeps one note.
+  /// Far more than the number of rays, because PacketHits::Forget() keeps up to one note for each ray.
   static constexpr std::size_t kMostNotes = 256;
 
   /// A child, and the least place along the packet's axis that its box reaches.
@@ -57,12 +57,13 @@ struct ScanScratch {
   std::array<NotedTriangle, kMostNotes> notes;
 };
 
-/// The distance from the ray's origin to the hit; +inf without a hit.
+/// Returns the distance from the ray's origin to the hit, or +inf without a hit.
 [[nodiscard]] inline float range_of(const RayHit& hit, const glm::vec3& direction) {
   return hit ? float(hit.t * glm::length(glm::dvec3(direction))) : kFloatInfinity;
 }
 
-/// The nearest surface along every ray: the answer of walk_batch(), and the distance.
+/// Casts the rays of a packet: stores the id of the nearest surface along every ray, as walk_batch() finds it, and the
+/// distance.
 void cast_scan(const RayTree& tree, ScanPacket& packet, ScanScratch& scratch, Isa isa);
 
 }  // namespace frontmost::raycast_detail

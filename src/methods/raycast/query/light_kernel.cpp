@@ -46,7 +46,7 @@ struct LightAxes {
   }
 };
 
-/// Rounding bound of one unit in scaled coordinates: six roundings of up to three terms, and as much again.
+/// Bound on the rounding error of scaled coordinates of size 1: six roundings of up to three terms, and as much again.
 constexpr float kShearError = 0x1p-20f;
 
 class LightPacket {
@@ -61,7 +61,8 @@ class LightPacket {
     tree_size_ = std::max({far.x, far.y, far.z});
   }
 
-  /// \returns how often exact numbers decided about a ray and a triangle whose boxes in the plane meet.
+  /// Stores whether each point is lit. \returns how often exact arithmetic decided about a ray within the triangle's
+  /// box in the plane.
   std::uint64_t Find(std::span<const TrianglePoint> points, std::uint8_t* lit) {
     decided_ = 0;
     points_ = points;
@@ -86,7 +87,7 @@ class LightPacket {
     scale_ = float(std::ldexp(1.0, std::clamp(-exponent, -126, 126)));
   }
 
-  /// Finds the valid starts, their positions, and the scale.
+  /// Finds which starts are valid, their positions, and the scale.
   void Measure(glm::dvec3* position) {
     float size = tree_size_;
     waiting_count_ = 0;
@@ -107,7 +108,8 @@ class LightPacket {
     SetScale(size);
   }
 
-  /// Rays without a valid start are lit. These and unused rays take the place of a valid start.
+  /// Places the rays in the sheared plane. Rays without a valid start are lit; they and unused rays are placed at a
+  /// valid start.
   void Place() {
     glm::dvec3 position[kLightRays];
     Measure(position);
@@ -143,7 +145,7 @@ class LightPacket {
       reach = hn::Max(reach, hn::Max(hn::Max(hn::Abs(x), hn::Abs(y)), hn::Abs(z)));
     }
     reach_ = hn::GetLane(hn::MaxOfLanes(d, reach));
-    // The second term bounds the subtraction of doubles up to 2, which the shear does not cover.
+    // The second term bounds the rounding of the subtraction of doubles up to 2, which kShearError does not include.
     error_ = kShearError * reach_ + 0x1p-46f;
   }
 
@@ -181,7 +183,8 @@ class LightPacket {
     float slope, begin, end;
   };
 
-  /// Boxes whose outlines miss the range of `across`; the boxes reach from low_d to high_d towards the light.
+  /// Returns the boxes whose outlines miss the range of `across`. The boxes reach from low_d to high_d towards the
+  /// light.
   [[nodiscard]] HWY_INLINE QM Beside(const RayNode& node, std::size_t first, const Across& across, QV low_d,
                                      QV high_d) const {
     const QF d;
@@ -204,12 +207,12 @@ class LightPacket {
       if (axes_.sign < 0) low_d = hn::Neg(low_d), high_d = hn::Neg(high_d);
       const QV pad = hn::Mul(hn::Max(hn::Abs(low_d), hn::Abs(high_d)), hn::Set(d, kShearError));
       QM outside = hn::Lt(hn::Add(high_d, pad), hn::Set(d, b.low_d));
-      // Parts below all starts cast no shadow on them.
+      // The parts of boxes below all starts cast no shadow on any start.
       low_d = hn::Max(hn::Sub(low_d, pad), hn::Set(d, b.low_d));
       outside = hn::Or(outside, Beside(node, first, {axes_.u, axes_.slope_u, b.low_u, b.high_u}, low_d, high_d));
       outside = hn::Or(outside, Beside(node, first, {axes_.v, axes_.slope_v, b.low_v, b.high_v}, low_d, high_d));
-      // A box with ends at infinities of both signs is visited. The maximum of NaN and a number depends on the
-      // processor.
+      // A box whose ends are infinities of both signs gives NaN and is visited, because the maximum of NaN and a number
+      // depends on the processor.
       outside = hn::And(outside, hn::Eq(high_d, high_d));
       const std::uint32_t used = (1u << std::min(kQueryLanes, node.count - first)) - 1;
       for (std::uint32_t inside = ~QueryBits(outside) & used; inside != 0; inside &= inside - 1)
@@ -217,10 +220,11 @@ class LightPacket {
     }
   }
 
-  /// Sixteen triangles in the sheared plane, and the triangles that each vector of rays may meet.
+  /// Sixteen triangles in the sheared plane. `may_meet` has a mask for each vector of rays: the triangles that it may
+  /// meet.
   struct Sheared {
     alignas(64) float u[3][kRayLanes], v[3][kRayLanes], d[3][kRayLanes], reach[kRayLanes];
-    std::uint32_t beside[kLightRays / kQueryLanes];
+    std::uint32_t may_meet[kLightRays / kQueryLanes];
   };
 
   void MeetLeaf(const RayLeaf& leaf) {
@@ -259,7 +263,7 @@ class LightPacket {
       const QM beside_u = hn::Or(hn::Gt(low_u, hn::Set(d, b.high_u)), hn::Lt(high_u, hn::Set(d, b.low_u)));
       const QM beside_v = hn::Or(hn::Gt(low_v, hn::Set(d, b.high_v)), hn::Lt(high_v, hn::Set(d, b.low_v)));
       const QM outside = hn::Or(hn::Or(beside_u, beside_v), hn::Lt(high_d, hn::Set(d, b.low_d)));
-      any |= to.beside[i] = ~QueryBits(outside) & used;
+      any |= to.may_meet[i] = ~QueryBits(outside) & used;
     }
     return any;
   }
@@ -275,8 +279,9 @@ class LightPacket {
   /// One triangle, in the form that all rays share.
   struct Outline {
     float u[3], v[3], d[3];
-    float edge_error, side_error;  ///< error bound of a turn about an edge, and of six times the volume below a start
-    bool is_above;                 ///< all of the triangle is above all starts
+    float edge_error, side_error;  ///< error bounds of a turn about an edge, and of six times the volume of the
+                                   ///< tetrahedron with a start
+    bool is_above;                 ///< true if all of the triangle is above all starts
     float high_d;                  ///< greatest height of the triangle
     float pad;                     ///< error bound of coordinates
 
@@ -308,7 +313,7 @@ class LightPacket {
     const std::size_t lane = first_lane + index;
     const Outline outline = OutlineOf(sheared, lane);
     for (std::size_t block = 0; block < block_count_; ++block) {
-      if ((sheared.beside[block] >> index & 1) == 0) continue;
+      if ((sheared.may_meet[block] >> index & 1) == 0) continue;
       const std::size_t first = block * kQueryLanes;
       const Answer answer = MeetRays(outline, leaf.id[lane], first);
       for (std::uint32_t bits = QueryBits(answer.met); bits != 0; bits &= bits - 1)
@@ -326,7 +331,7 @@ class LightPacket {
     const QF d;
     const QU du;
     const QI di;
-    // A ray skips its own triangle. Rays that have met something are in the dark for good, and skip all others.
+    // A ray skips its own triangle. Rays that have met a triangle stay dark, and skip all other triangles.
     const QM waiting = hn::RebindMask(d, hn::MaskFromVec(hn::Load(di, waiting_ + first)));
     const QM others = hn::RebindMask(d, hn::Ne(hn::Load(du, ids_ + first), hn::Set(du, id)));
     const QV height = hn::Load(d, d_ + first);
@@ -364,12 +369,13 @@ class LightPacket {
   }
 
   HWY_NOINLINE void Decide(const RayLeaf& leaf, std::size_t lane, const Outline& outline, std::size_t ray) {
-    // Rays outside the triangle's box do not count, as the width of a vector decides whether they come here.
+    // Only rays within the triangle's box are counted, because whether others come here depends on the width of
+    // vectors.
     decided_ += outline.box_holds(u_[ray], v_[ray]);
     if (stands_before(leaf.corners_of(lane), points_[ray], to_light_) && !Passes(leaf, lane, ray)) Darken(ray);
   }
 
-  /// Whether light passes the triangle at the ray's place: through a hole, or from behind.
+  /// Returns whether light passes the triangle where the ray meets it: through a hole, or from behind.
   [[nodiscard]] HWY_INLINE bool Passes(const RayLeaf& leaf, std::size_t lane, std::size_t ray) const {
     if (is_one_way_ && !tree_.sides->is_double(leaf.id[lane]) && !FacesLight(leaf.corners_of(lane))) return true;
     const Cutouts* const cutouts = tree_.cutouts.get();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hit of a ray or segment, and what stands between a point and a light, decided exactly on the floats of the query,
-// of the point and of the vertices; and the public queries, which answer parts of 256 in one kernel call each. A single
-// query is a part of one, so it gets the same answer.
+// Decides the hit of a ray or segment, and what stands between a point and a light, exactly on the floats of the query,
+// of the point and of the vertices. Also defines the public queries, which are answered in parts of 256, each by one
+// kernel call. A single query is a part of one, so it gets the same answer.
 //
-// A point of a triangle with weights w and vertices c is (sum of w c) / (sum of w) + lift: no float, but a fraction. A
-// vertex q of another triangle lies at (sum of w (q - c - lift)) / (sum of w) from the point. Leaving out the division
-// does not change signs of determinants, and sums of products remain. So rounding never darkens a point of a triangle
-// that lies in the plane of its neighbour.
+// A point of a triangle with weights w and vertices c is (sum of w c) / (sum of w) + lift, a fraction that floats
+// cannot hold. A vertex q of another triangle lies at (sum of w (q - c - lift)) / (sum of w) from the point. The
+// division is left out, because it does not change signs of determinants; only sums of products remain. So rounding
+// never darkens a point of a triangle that lies in the plane of its neighbour.
 
 #include "raycast/query/queries.h"
 
@@ -20,7 +20,7 @@ namespace frontmost {
 namespace raycast_detail {
 namespace {
 
-/// The sums as numbers that are never rounded.
+/// Returns the sums as numbers that are never rounded.
 ExactVector unrounded(const HighLowVector& v) {
   ExactVector sums;
   for (std::size_t axis = 0; axis < 3; ++axis) sums[axis] = Expansion(v.low[axis]) + Expansion(v.high[axis]);
@@ -29,9 +29,9 @@ ExactVector unrounded(const HighLowVector& v) {
 
 glm::dvec3 rounded(const HighLowVector& v) { return {v.high[0], v.high[1], v.high[2]}; }
 
-/// The place at which the ray meets the plane of vertices `c`, which are relative to the origin. The place is kept
-/// between the vertices along every axis: with slivers, or triangles tiny against their distance, rounding leaves no
-/// better bound. The signs are certain, so the rounded place must not contradict them.
+/// Returns the t at which the ray meets the plane of vertices `c`, which are relative to the origin. Along every axis,
+/// t is kept between the vertices: for slivers, or triangles tiny compared with their distance, rounding leaves no
+/// better bound. The signs are certain, so the rounded t must not contradict them.
 double place_along(const Query& q, const glm::dvec3& along, const std::array<glm::dvec3, 3>& c) {
   double nearest = std::numeric_limits<double>::denorm_min();
   double farthest = q.is_segment ? 1.0 : std::numeric_limits<double>::max();
@@ -44,7 +44,7 @@ double place_along(const Query& q, const glm::dvec3& along, const std::array<glm
   }
   const glm::dvec3 n = glm::cross(c[1] - c[0], c[2] - c[0]);
   const double t = glm::dot(n, c[0]) / glm::dot(n, along);
-  // NaN comes from underflow. The range may be empty by a rounding.
+  // t is NaN after underflow. Rounding may make the range empty; t is then still positive.
   return std::max(std::min(std::isnan(t) ? nearest : std::max(t, nearest), farthest),
                   std::numeric_limits<double>::denorm_min());
 }
@@ -79,7 +79,7 @@ ExactVector exact_from(const TrianglePoint& point, const glm::vec3& corner) {
   return result;
 }
 
-/// The sign, or 2 if rounding leaves it open.
+/// Returns the sign of the determinant, or 2 if rounding leaves it open.
 int likely_sign(const Rounded& a, const Rounded& b, const Rounded& c) {
   const double det = glm::dot(a.value, glm::cross(b.value, c.value));
   const glm::dvec3 &p = b.size, &q = c.size;
@@ -98,14 +98,14 @@ class LitTriangle {
     rounded_light_ = {glm::dvec3(to_light), glm::abs(glm::dvec3(to_light))};
   }
 
-  /// How the light's ray turns about the edge from vertex i to vertex j.
+  /// Returns how the light's ray turns about the edge from vertex i to vertex j.
   [[nodiscard]] int turn(std::size_t i, std::size_t j) const {
     const int likely = likely_sign(rounded_light_, rounded_[i], rounded_[j]);
     if (likely != 2) return likely;
     return dot(exact(light_), cross(exact_corner(i), exact_corner(j))).sign();
   }
 
-  /// The point's side of the plane; 0 on the plane.
+  /// Returns the point's side of the triangle's plane, or 0 if the point is on the plane.
   [[nodiscard]] int side() const {
     const int likely = likely_sign(rounded_[0], rounded_[1], rounded_[2]);
     if (likely != 2) return likely;
@@ -145,7 +145,8 @@ int determinant_sign(const HighLowVector& a, const HighLowVector& b, const HighL
     det += x[std::size_t(i)] * (p - q);
     size += std::abs(x[std::size_t(i)]) * (std::abs(p) + std::abs(q));
   }
-  // Three roundings of the coordinates and five more: less than 16 half units in the last place of the size.
+  // Each product in `det` has three rounded coordinates, and five more roundings follow. So the error of `det` is less
+  // than 16 half units in the last place of `size`.
   if (std::abs(det) > size * 0x1p-49) return det > 0 ? 1 : -1;
   return dot(unrounded(a), cross(unrounded(b), unrounded(c))).sign();
 }
@@ -160,13 +161,15 @@ RayHit meet(const Query& q, const std::array<glm::vec3, 3>& corners, PrimitiveId
   const HighLowVector along = q.is_segment ? high_low_difference(q.end, q.origin) : high_low(q.direction);
   std::array<HighLowVector, 3> c;
   for (std::size_t k = 0; k < 3; ++k) c[k] = high_low_difference(corners[k], q.origin);
-  // How the line turns about each edge. Seen against the direction, counter-clockwise is negative: front.
+  // The signs say how the line turns about each edge. If they are negative, the vertices are counter-clockwise as seen
+  // by the ray, so it meets the front.
   const int u = determinant_sign(along, c[1], c[2]), v = determinant_sign(along, c[2], c[0]),
             w = determinant_sign(along, c[0], c[1]);
   const int least = std::min({u, v, w}), most = std::max({u, v, w});
   const int facing = least >= 0 ? most : most <= 0 ? least : 0;
   if (facing == 0) return {};
-  // The origin's side of the plane decides. A surface through the origin is not met.
+  // The triangle lies ahead if the origin is on the matching side of its plane. A surface through the origin is not
+  // met.
   if (determinant_sign(c[0], c[1], c[2]) != facing) return {};
   if (q.is_segment) {
     std::array<HighLowVector, 3> e;
@@ -177,7 +180,7 @@ RayHit meet(const Query& q, const std::array<glm::vec3, 3>& corners, PrimitiveId
 }
 
 bool is_valid(const TrianglePoint& point) {
-  // Zero, or NaN if a value is not finite.
+  // The sum is zero, or NaN if a value is not finite.
   float nothing = dot3(point.lift, glm::vec3(0)) + dot3(point.weights, glm::vec3(0));
   for (const glm::vec3& corner : point.corners) nothing += dot3(corner, glm::vec3(0));
   const glm::vec3& w = point.weights;
@@ -185,14 +188,14 @@ bool is_valid(const TrianglePoint& point) {
 }
 
 bool is_own(const CornerPositions& corners, const TrianglePoint& point) {
-  // Compares positions, not ids: a triangle that is in a file twice would darken itself.
+  // Positions are compared, not ids, because a triangle that is in a file twice would darken itself.
   return std::is_permutation(corners.begin(), corners.end(), point.corners.begin());
 }
 
 bool stands_before(const CornerPositions& corners, const TrianglePoint& point, const glm::vec3& to_light) {
   if (is_own(corners, point)) return false;
   const LitTriangle sight(corners, point, to_light);
-  // The rule of meet(): all turns go to one side, edges included, and the plane lies ahead.
+  // The rule is that of meet(): all turns have one sign or are 0, and the plane lies ahead.
   const int u = sight.turn(1, 2), v = sight.turn(2, 0), w = sight.turn(0, 1);
   const int least = std::min({u, v, w}), most = std::max({u, v, w});
   const int facing = least >= 0 ? most : most <= 0 ? least : 0;
@@ -217,12 +220,12 @@ namespace {
 
 using namespace raycast_detail;
 
-/// Queries and answers of a part, 20 KiB, lie on the stack and in the first-level cache.
+/// Queries and answers of a part take 20 KiB, so they fit the stack and the first-level cache.
 constexpr std::size_t kQueriesPerPart = 256;
 
 Query query_of(const Ray& ray) { return {ray.origin, ray.origin, ray.direction, false}; }
 
-/// The rounded direction may overflow if the ends are as far apart as floats reach; it then leaves nothing out.
+/// The rounded direction may overflow if the ends are as far apart as floats reach; the walk then leaves no box out.
 Query query_of(const Segment& segment) { return {segment.from, segment.to, segment.to - segment.from, true}; }
 
 RayHit first_of(const RayTree& tree, const Query& query, Want want) {
@@ -237,8 +240,8 @@ void check_sizes(std::size_t queries, std::size_t answers) {
                 "there are " + std::to_string(answers) + " places for " + std::to_string(queries) + " queries");
 }
 
-/// Calls take(begin, hits) for the answers to consecutive questions. Answers are stored by number, so they do not
-/// depend on threads.
+/// Calls take(begin, hits) for the answers to consecutive questions, the first of which has the index `begin`. Answers
+/// are stored by index, so they do not depend on threads.
 template <class Question, class Take>
 void ask(const RayIndex& index, std::span<const Question> questions, Want want, const Execution& execution,
          const Take& take) {

@@ -14,7 +14,7 @@
 
 namespace frontmost::raycast_detail {
 
-/// Whether the query goes on through the triangle that it meets: by a hole, or from behind.
+/// Returns whether the ray continues behind a hit, because it meets a hole, or a one-sided triangle from behind.
 [[nodiscard]] inline bool passes(const RayTree& tree, const Query& query, const RayHit& hit) {
   if (query.is_one_way && !hit.is_front && !tree.sides->is_double(hit.primitive)) return true;
   const Cutouts* const cutouts = tree.cutouts.get();
@@ -24,18 +24,18 @@ namespace frontmost::raycast_detail {
   return (*cutouts)[hit.primitive].is_hole_at(from + hit.t * along);
 }
 
-/// When a walk ends.
+/// The hits that a walk looks for.
 enum class Want : std::uint8_t {
   closest,  ///< one hit, the nearest
   any,      ///< one hit, whichever comes first
   all,      ///< every hit, in no order
 };
 
-/// Appends the hits to `hits`. Precondition: is_valid(query).
+/// Walks the tree and appends the hits that `want` names to `hits`. Precondition: is_valid(query).
 void walk(const RayTree& tree, const Query& query, Want want, std::vector<RayHit>& hits, Isa isa);
 
-/// The hit of each query, closest or any as `want` says; none if the query is not valid. Precondition: as many answers
-/// as queries. \returns how many nodes and leaves were visited.
+/// Stores the hit of each query: closest or any as `want` says, or none if the query is not valid. Precondition: there
+/// are as many answers as queries. \returns the number of nodes and leaves that were visited.
 std::uint64_t walk_batch(const RayTree& tree, std::span<const Query> queries, Want want, std::span<RayHit> answers,
                          Isa isa);
 
@@ -45,10 +45,10 @@ inline constexpr std::size_t kLightRays = 64;
 /// A light at infinity.
 struct LightAim {
   glm::vec3 to_light;
-  bool is_one_way = false;  ///< Query::is_one_way, for rays that come from the light
+  bool is_one_way = false;  ///< light passes one-sided triangles from behind, as with Query::is_one_way
 };
 
-/// are_lit() on this thread. \returns how often exact numbers had to decide, which takes microseconds.
+/// Does are_lit() on this thread. \returns how often exact arithmetic had to decide, which takes microseconds.
 std::uint64_t find_lit(const RayTree& tree, std::span<const TrianglePoint> points, const LightAim& light,
                        std::span<std::uint8_t> answers, Isa isa);
 

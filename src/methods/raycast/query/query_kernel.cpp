@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ray through the tree, sixteen boxes or triangles at a time. Vectors only leave out triangles that are certainly
-// missed, or lie behind a certain hit; meet() decides the rest, one or two triangles a ray. Rays of a batch go through
-// large trees in turns, one fetching while the others work.
+// Takes one ray through the tree, sixteen boxes or triangles at a time. Vectors only leave out triangles that are
+// certainly missed, or lie behind a certain hit; meet() decides the others, one or two triangles a ray. In large trees
+// the rays of a batch take turns: while one ray waits for memory, the others work.
 //
 //    ray 0   fetch ------> work   fetch ------> work       Nodes of large trees come from memory. While one ray's next
 //    ray 1      fetch ------> work   fetch ------>         node is on its way, other rays visit theirs, so that the
@@ -27,7 +27,7 @@ namespace frontmost::raycast_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A child, and where the ray enters its box.
+/// A child, and the t at which the ray enters its box.
 struct Entry {
   float t;
   std::uint32_t child;
@@ -63,8 +63,8 @@ class QueryWalker {
   }
 
  private:
-  /// Along one axis, t = bound * inverse - start, widened by all rounding, also of numbers below the normal floats. The
-  /// end of a segment is rounded too.
+  /// Computes t = bound * inverse - start for a bound of a box along one axis. The two starts are widened by all
+  /// rounding errors, also those of subnormal floats and of a segment's rounded end.
   struct Slab {
     float inverse, start_enter, start_leave;
     bool rests, is_flipped;
@@ -83,14 +83,15 @@ class QueryWalker {
     const double size = std::max({double(std::abs(tree_.bounds.low[axis])), double(std::abs(tree_.bounds.high[axis])),
                                   std::abs(o), q_.is_segment ? double(std::abs(q_.end[axis])) : 0.0});
     constexpr float all = std::numeric_limits<float>::infinity();
-    // An axis along which the ray hardly moves says nothing, unless the ray does not move along it at all.
+    // An axis along which the ray hardly moves excludes no box. If the ray does not move along it at all, Beside()
+    // tests it.
     const double reach = std::max(1.0, size) / std::abs(d);
     if (!(reach < 0x1p120) || std::isinf(d)) return {0, all, -all, d == 0, false};
     const double inverse = 1 / d, slack = 0x1p-20 * size * std::abs(inverse) + 0x1p-146;
     return {float(inverse), float(o * inverse + slack), float(o * inverse - slack), false, inverse < 0};
   }
 
-  /// Boxes that the ray cannot meet, as it does not move along an axis.
+  /// Returns the boxes that the ray cannot meet, because it does not move along an axis and is outside their range.
   [[nodiscard]] HWY_NOINLINE QM Beside(const RayNode& node, std::size_t first) const {
     const QF d;
     QM beside = hn::MaskFromVec(hn::Zero(d));
@@ -103,7 +104,7 @@ class QueryWalker {
     return beside;
   }
 
-  /// Pushes the children that the ray enters, the nearest last. \returns how many.
+  /// Pushes the children that the ray enters, the nearest last. \returns their number.
   std::size_t LookInto(const RayNode& node, Entry* top) const {
     const QF d;
     const QU du;
@@ -134,7 +135,8 @@ class QueryWalker {
     return count;
   }
 
-  /// For the nearest hit: notes triangles that may be met and decides later, as nearer certain hits spare most of them.
+  /// Visits a leaf for the closest hit. Triangles that may be met are noted and decided later, because most of them
+  /// turn out to lie behind nearer certain hits.
   void NoteLeaf(const RayLeaf& leaf) {
     const QF d;
     for (std::size_t first = 0; first < kRayLanes; first += kQueryLanes) {
@@ -154,12 +156,13 @@ class QueryWalker {
     }
   }
 
-  /// Moves the end: nothing that begins beyond a place along the ray is the nearest.
+  /// Moves the end of the ray to a place where it certainly meets a triangle. Triangles that begin beyond it are not
+  /// the closest.
   void EndAt(float place) { end_ = std::min(end_, axis_.t_of(place) * (1 + 0x1p-20f) + 0x1p-148f); }
 
   void Note(const RayLeaf& leaf, std::size_t lane, float from) {
     if (leaf.id[lane] == no_primitive) return;
-    // Deciding early only costs time; triangles beyond the end are left out later.
+    // If there is no room, the noted triangles are decided now, which only costs time.
     if (noted_ == kMostNoted) Settle();
     notes_[noted_++] = {from, leaf.id[lane], leaf.corners_of(lane)};
   }
@@ -179,7 +182,7 @@ class QueryWalker {
     bool met = false;
     for (std::size_t first = 0; first < kRayLanes; first += kQueryLanes) {
       const Candidates candidates = CandidatesOf(axis_.Pass(leaf, first));
-      // Any hit will do; its triangle and place are not asked for.
+      // Any hit suffices, so only its id is given.
       if (want_ == Want::any && candidates.certain != 0 && !tree_.cutouts && !q_.is_one_way) {
         const std::size_t lane = first + hwy::Num0BitsBelowLS1Bit_Nonzero32(candidates.certain);
         hits_.push_back({leaf.id[lane], 0, false});
@@ -203,7 +206,7 @@ class QueryWalker {
     } else if (hit.t < hits_[0].t || (hit.t == hits_[0].t && hit.primitive < hits_[0].primitive)) {
       hits_[0] = hit;
     }
-    // The end is rounded up, as boxes at the same t may hold an equal hit of a lower id.
+    // The end is rounded up, because boxes at the same t may hold an equal hit with a lower id.
     if (want_ == Want::closest) end_ = std::min(end_, float(hits_[0].t) * (1 + 0x1p-22f) + 0x1p-148f);
   }
 
@@ -211,7 +214,8 @@ class QueryWalker {
     std::uint32_t possible, certain;
   };
 
-  /// Triangles before the start or beyond the end count as missed.
+  /// Returns which triangles are possible and which are certain hits. Triangles before the start or beyond the end are
+  /// missed.
   [[nodiscard]] HWY_INLINE Candidates CandidatesOf(const Passes& p) const {
     const QF d;
     const float end = axis_.place_of(end_);
@@ -234,7 +238,7 @@ class QueryWalker {
   Noted notes_[kMostNoted];
 };
 
-/// Room for the children that a walk has put off. Allocates memory in uncommonly deep trees only.
+/// The stack of a walk: children that are not visited yet. Allocates memory for uncommonly deep trees only.
 class WalkStack {
  public:
   explicit WalkStack(const RayTree& tree) : deep_(tree.stack_size() > kUsual ? tree.stack_size() : 0) {}
@@ -262,12 +266,12 @@ struct QueryBatch {
   std::uint64_t steps = 0;  ///< visited nodes and leaves
 };
 
-/// Walks for the queries of a batch, one after the other.
+/// Answers queries of a batch, one after the other.
 class BatchWalk {
  public:
   explicit BatchWalk(QueryBatch& batch) : batch_(batch), stack_(batch.tree) {}
 
-  /// \returns false if no query is left.
+  /// Begins the next valid query. \returns false if no query is left.
   bool Begin() {
     while (batch_.next < batch_.queries.size()) {
       number_ = batch_.next++;
@@ -280,7 +284,7 @@ class BatchWalk {
     return false;
   }
 
-  /// \returns false if no query is left.
+  /// Does a step of the current query, and begins the next one after its last step. \returns false if no query is left.
   bool Step() {
     ++batch_.steps;
     if (walker_->Step()) return true;
@@ -296,8 +300,8 @@ class BatchWalk {
   std::optional<QueryWalker> walker_;
 };
 
-/// Rays that take turns hide each other's waiting for memory: 1.4 times as many a second if a million triangles do not
-/// fit into caches, but a tenth fewer if all do. More than eight rays gain nothing.
+/// Rays that take turns wait for memory at the same time. This gives 1.4 times as many rays a second if a million
+/// triangles do not fit into caches, but a tenth fewer if all triangles fit. More than eight rays gain nothing.
 constexpr std::size_t kTurns = 8;
 constexpr std::size_t kTurnsFromBytes = std::size_t(8) << 20;
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The definitions of what single rays and segments meet, and of what stands between a point and a light: exact, in
-// plain scalar code. Kernels are faster ways to the same bits, and ask here if rounding leaves a doubt. sample_rule.h
-// holds the definition for rays through the samples of a view.
+// Defines which triangles single rays and segments meet, and which triangles stand between a point and a light. The
+// definitions are exact, in plain scalar code. Kernels find the same bits faster, and call these functions if rounding
+// leaves a doubt. sample_rule.h holds the definition for rays through the samples of a view.
 //
 //              c
 //             / |         The line from o along d passes through the triangle, edges included, if it turns to the same
 //    o ------/--|---> d   side about all three edges: the signs of det(d, b - o, c - o), det(d, c - o, a - o) and
-//           a---b         det(d, a - o, b - o) agree. The triangle is before o if the sign of det(a - o, b - o, c - o)
+//           a---b         det(d, a - o, b - o) agree. The triangle is ahead of o if the sign of det(a - o, b - o, c -
+//           o)
 //                         agrees with them. Differences of floats are kept as exact sums of two doubles.
 #pragma once
 
@@ -21,7 +22,7 @@ struct HighLowVector {
   std::array<double, 3> high{}, low{};
 };
 
-/// high_low(v) is v itself, high_low_difference(b, a) is b - a.
+/// high_low(v) returns v itself, and high_low_difference(b, a) returns b - a.
 [[nodiscard]] HighLowVector high_low(const glm::vec3& v);
 [[nodiscard]] HighLowVector high_low_difference(const glm::vec3& b, const glm::vec3& a);
 
@@ -31,7 +32,7 @@ struct HighLowVector {
 
 /// A ray, or a segment whose far end is at t = 1.
 struct Query {
-  glm::vec3 origin, end;  ///< `end` only counts in segments
+  glm::vec3 origin, end;  ///< `end` is used for segments only
   glm::vec3 direction;    ///< in segments: end - origin, rounded
   bool is_segment;
   bool is_one_way = false;  ///< one-sided triangles are not met from behind, as in views with Culling::material
@@ -40,15 +41,16 @@ struct Query {
 /// \returns false if nothing can be met: a coordinate is not finite, or there is no direction.
 [[nodiscard]] bool is_valid(const Query& query);
 
-/// The definition of a hit, on plain scalars: the triangle is met at its exact place, or not at all.
+/// Returns the hit of the query with one triangle, or none. This is the definition of a hit, on plain scalars: whether
+/// the query meets the triangle is decided exactly.
 [[nodiscard]] RayHit meet(const Query& query, const std::array<glm::vec3, 3>& corners, PrimitiveId id);
 
-/// False if there is no such point: a value is not finite, a weight is negative, or no weight is above zero.
+/// Returns false if the point is undefined: a value is not finite, a weight is negative, or no weight is above zero.
 [[nodiscard]] bool is_valid(const TrianglePoint& point);
 
 using CornerPositions = std::array<glm::vec3, 3>;
 
-/// Whether the triangle's vertices are the point's own, in any order.
+/// Returns whether the vertices are those of the point's own triangle, in any order.
 [[nodiscard]] bool is_own(const CornerPositions& corners, const TrianglePoint& point);
 
 /// True if the ray from the point towards the light passes through the triangle. Passing through an edge or vertex
@@ -57,11 +59,11 @@ using CornerPositions = std::array<glm::vec3, 3>;
 /// values elsewhere, and a direction.
 [[nodiscard]] bool stands_before(const CornerPositions& corners, const TrianglePoint& point, const glm::vec3& to_light);
 
-/// Where the ray passes through the triangle's plane, rounded. Precondition: stands_before().
+/// Returns the rounded point where the ray passes through the triangle's plane. Precondition: stands_before() is true.
 [[nodiscard]] glm::dvec3 passed_point(const CornerPositions& corners, const TrianglePoint& point,
                                       const glm::vec3& to_light);
 
-/// The position of the point, rounded.
+/// Returns the rounded position of the point.
 [[nodiscard]] glm::dvec3 position_of(const TrianglePoint& point);
 
 }  // namespace frontmost::raycast_detail

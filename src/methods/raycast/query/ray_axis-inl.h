@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests many triangles against one ray: which it passes by, and which it passes through at what place.
+// Tests many triangles against one ray: which triangles the ray misses, and where it passes through the others.
 //
 //    sheared along the ray       The triangle is moved so that the ray's origin is at zero, and sheared so that the ray
 //        v |   c                 runs along one axis of the world. The ray passes through the triangle if zero lies
@@ -38,8 +38,8 @@ constexpr std::size_t kQueryLanes = hn::MaxLanes(QF());
 
 HWY_INLINE std::uint32_t QueryBits(QM mask) { return std::uint32_t(frontmost::HWY_NAMESPACE::BitsOf(QF(), mask)); }
 
-/// How many of `count` are greater than number i, or equal and before it. Bits of floats from 0 on are ordered as the
-/// floats are, even if they overflow to NaN.
+/// Returns how many of `count` values are greater than value i, or equal to it and before it. The values are the bits
+/// of floats from 0 on, which have the same order as the floats, even if these overflow to NaN.
 HWY_INLINE std::size_t RankOf(const std::int32_t* at, std::size_t count, std::size_t i) {
   const QI d;
   const auto own = hn::Set(d, at[i]);
@@ -52,14 +52,15 @@ HWY_INLINE std::size_t RankOf(const std::int32_t* at, std::size_t count, std::si
   return rank;
 }
 
-/// Triangles that the ray's line certainly passes `beside`, and triangles that it certainly passes `inside`. If the
-/// line meets a triangle at all, it does so between the places `from` and `to`.
+/// The triangles that the ray's line certainly misses (`beside`), and those that it certainly passes through
+/// (`inside`). If the line meets a triangle at all, it does so between the places `from` and `to`.
 struct Passes {
   QM beside, inside;
   QV from, to;
 };
 
-/// A ray as an axis. Places along it count from the origin, in units of the direction's largest coordinate.
+/// A ray as an axis. A place on the ray is its distance from the origin along the world axis that the ray moves most
+/// along.
 class RayAxis {
  public:
   explicit RayAxis(const Query& query) : origin_(query.origin) {
@@ -75,8 +76,8 @@ class RayAxis {
   [[nodiscard]] float place_of(float t) const { return t * length_; }
   [[nodiscard]] float t_of(float place) const { return place / length_; }
 
-  /// Tests triangles, sheared along the ray: the ray meets a triangle if all its edges turn about the axis in one
-  /// direction. It misses the triangle if two edges certainly turn in different directions.
+  /// Tests triangles that are sheared along the ray. The line meets a triangle if all of its edges turn about the axis
+  /// in one direction, and misses it if two edges certainly turn in different directions.
   [[nodiscard]] HWY_INLINE Passes Pass(const RayLeaf& leaf, std::size_t first) const {
     const QF d;
     QV u[3], v[3], z[3];
@@ -108,8 +109,8 @@ class RayAxis {
   }
 
  private:
-  /// Triangles with sizes of which no product overflows, so that no turn is NaN (least and most may ignore NaN), and
-  /// with turns that underflow does not make wrong by more than the bounds.
+  /// Returns the triangles that the error bounds hold for. Their sizes are so small that no product overflows and no
+  /// turn is NaN, which Least() and Most() may ignore. Their turns are so great that underflow stays within the bounds.
   static HWY_INLINE QM Serves(QV size, QV total) {
     const QF d;
     return hn::And(hn::Lt(size, hn::Set(d, 0x1p40f)), hn::Gt(hn::Abs(total), hn::Set(d, 0x1p-80f)));
@@ -119,7 +120,7 @@ class RayAxis {
   static HWY_INLINE QV Size(const QV (&x)[3]) { return hn::Max(hn::Max(hn::Abs(x[0]), hn::Abs(x[1])), hn::Abs(x[2])); }
 
   glm::vec3 origin_;
-  int z_ = 2, u_ = 0, v_ = 1;  ///< the axis that the ray moves most along, and the others
+  int z_ = 2, u_ = 0, v_ = 1;  ///< the axis that the ray moves most along, and the other two
   float sign_ = 1, length_ = 1;
   float slope_u_ = 0, slope_v_ = 0;
 };

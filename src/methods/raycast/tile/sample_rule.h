@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one definition of what a ray through a sample meets, in plain scalar code. Kernels are faster ways to the same
-// bits.
+// Defines which triangle a ray through a sample meets, in plain scalar code. Kernels find the same bits faster.
 //
 // S. Woop, C. Benthin, I. Wald. Watertight Ray/Triangle Intersection. Journal of Computer Graphics Techniques 2(1),
-// 2013; here the determinants are never rounded.
+// 2013. Unlike theirs, the signs of determinants are exact here.
 //
-// Corners are homogeneous screen positions (view/screen_transform.h), rounded, and the same for every triangle with
-// this vertex. Sheared so that the ray through (sx, sy) is the axis, a corner lies at (x - sx*w, y - sy*w). The ray
-// meets the triangle if the origin is inside the three sheared corners, edges included. Whether a triangle is seen
-// edge-on, and so covers nothing, is decided exactly, on world coordinates.
+// A corner is the rounded homogeneous screen position of a vertex (view/screen_transform.h), and is equal for all
+// triangles with this vertex. Corners are sheared so that the ray through (sx, sy) becomes the axis: a corner then lies
+// at (x - sx*w, y - sy*w). The ray meets the triangle if the origin is inside the three sheared corners, edges
+// included. Whether a triangle is seen edge-on, and so covers nothing, is decided exactly, on world coordinates.
 #pragma once
 
 #include <algorithm>
@@ -22,13 +21,13 @@
 namespace frontmost::raycast_detail {
 
 /// Keys are affine over the screen. They are evaluated from the centre of the tile that holds the sample, because
-/// floats lose precision far from the image's centre. The tile is part of the definition.
+/// floats lose precision far from the image's centre. So the tile is part of the definition of a key.
 inline constexpr int kTileSize = 32;
 
-/// Corners between the planes, within the guard band and within these distances are transformed and sheared in floats:
-/// products of two sheared coordinates then stay in range. All other corners take doubles.
+/// Corners between the planes, within the guard band and within these distances are transformed and sheared in floats,
+/// because products of two sheared coordinates then stay in range. All other corners are computed in doubles.
 inline constexpr float kSingleNear = 0x1p-40f, kSingleFar = 0x1p40f;
-/// Steeper or higher key planes belong to triangles that are as good as edge-on: their keys are made constant.
+/// Steeper or higher key planes belong to triangles that are nearly edge-on, so the keys of these are made constant.
 inline constexpr float kSteepest = 0x1p60f;
 
 struct SampleCorner {
@@ -36,7 +35,7 @@ struct SampleCorner {
   bool is_single = false;  ///< the values are floats
 };
 
-/// A homogeneous screen position in doubles.
+/// Returns a homogeneous screen position in doubles.
 inline glm::dvec3 wide_place(const ScreenTransform& t, const glm::vec3& world) {
   const double dx = double(world.x) - t.eye[0], dy = double(world.y) - t.eye[1], dz = double(world.z) - t.eye[2];
   return {t.x_row[0] * dx + t.x_row[1] * dy + t.x_row[2] * dz + t.x_offset,
@@ -51,7 +50,7 @@ inline SampleCorner make_corner(const ScreenTransform& t, const glm::vec3& world
   return {place.x, place.y, place.z, false};
 }
 
-/// Whether a plane through the triangle holds the eye, or in parallel projection the view direction.
+/// Returns whether a plane through the triangle contains the eye or, in parallel projection, the view direction.
 inline bool is_edge_on(const View& view, const std::array<glm::vec3, 3>& world) {
   const glm::dvec3 a(world[0]), b(world[1]), c(world[2]);
   if (view.projection.orthographic) return sign_of_determinant({b, a}, {c, a}, {view.forward()}) == 0;
@@ -82,8 +81,8 @@ inline Point sheared(const ScreenTransform& t, const SampleCorner& c, float sx, 
   return {float(c.x) - sx * w, float(c.y) - sy * w};
 }
 
-/// The exact sign of a.x * b.y - a.y * b.x. Products round monotonically, so different rounded products decide. Equal
-/// ones leave the decision to their rounding errors.
+/// Returns the exact sign of a.x * b.y - a.y * b.x. Rounding is monotonic, so the rounded products decide if they
+/// differ. If they are equal, their rounding errors decide.
 inline int side(const Point& a, const Point& b) {
   const double p = a.x * b.y, q = a.y * b.x;
   if (p != q) return p > q ? 1 : -1;
@@ -91,7 +90,8 @@ inline int side(const Point& a, const Point& b) {
   return int(p_error > q_error) - int(p_error < q_error);
 }
 
-/// -1: met from the front (counter-clockwise on the screen; y is down); 1: met from behind; 0: missed, or edge-on.
+/// Returns -1 if the triangle is met from the front (counter-clockwise on the screen; y is down), 1 if it is met from
+/// behind, and 0 if it is missed or edge-on.
 inline int facing(const ScreenTransform& t, const std::array<SampleCorner, 3>& corners, float sx, float sy) {
   const Point a = sheared(t, corners[0], sx, sy), b = sheared(t, corners[1], sx, sy),
               c = sheared(t, corners[2], sx, sy);
@@ -100,7 +100,7 @@ inline int facing(const ScreenTransform& t, const std::array<SampleCorner, 3>& c
   return least >= 0 ? most : most <= 0 ? least : 0;
 }
 
-/// Whether culling keeps a triangle that a ray meets this way; `facing` comes from facing().
+/// Returns whether the ray meets the triangle and culling keeps it. `facing` is the result of facing().
 inline bool keeps(const FacingRule& rule, PrimitiveId id, int facing) {
   return facing != 0 && rule.keeps(id, facing < 0);
 }
@@ -110,12 +110,12 @@ inline float key_of_distance(const ScreenTransform& t, double d) {
   return std::fmin(t.near * (1.0f / float(d)), 1.0f);
 }
 
-/// The key of a triangle over one tile: k0 + u*gx + v*gy, (u, v) from the tile's centre in 1/256 pixel.
+/// The key of a triangle over one tile: k0 + u*gx + v*gy, where (u, v) is relative to the tile's centre in 1/256 pixel.
 struct TileKeyPlane {
   float gx = 0, gy = 0, k0 = 0;
   float low = 0, high = 0;  ///< range of the vertices' keys, which no key leaves
   bool is_clipped = false;  ///< not wholly between near and far: only keys in [cut, 1] are seen
-  bool is_outside = false;  ///< wholly before near or beyond far, or seen edge-on: covers nothing
+  bool is_outside = false;  ///< wholly nearer than near, wholly beyond far, or seen edge-on: covers nothing
   float cut = 0;
 
   [[nodiscard]] float raw(float u, float v) const { return (k0 + u * gx) + v * gy; }
@@ -132,8 +132,8 @@ inline void set_range(const ScreenTransform& t, const std::array<SampleCorner, 3
   plane.low = farthest <= t.far ? key_of_distance(t, farthest) : plane.cut;
 }
 
-/// The vertices that keys are computed from. If one vertex is in doubles, all are: the triangle may pass so near to the
-/// eye that floats would turn its plane to the other side.
+/// Returns the vertices that keys are computed from. If one vertex is in doubles, all are, because the triangle may
+/// pass so near to the eye that floats would turn its plane to the other side.
 inline std::array<glm::dvec3, 3> places_of(const ScreenTransform& t, const SampleTriangle& triangle, bool is_single) {
   std::array<glm::dvec3, 3> places;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -143,12 +143,13 @@ inline std::array<glm::dvec3, 3> places_of(const ScreenTransform& t, const Sampl
   return places;
 }
 
-/// The key plane of a triangle. `tile` is the tile's centre, from the image's, in 1/256 pixel.
+/// Returns the key plane of a triangle. `tile` is the tile's centre relative to the image's centre, in 1/256 pixel.
 inline TileKeyPlane key_plane(const View& view, const ScreenTransform& t, const SampleTriangle& triangle,
                               const glm::dvec2& tile) {
   TileKeyPlane plane;
   set_range(t, triangle.corners, plane);
-  // Single corners are before the eye: an edge-on triangle of single corners is no wider than their rounding.
+  // Triangles of single corners are not tested. These corners are in front of the eye, so an edge-on triangle of them
+  // is no wider than their rounding.
   const bool is_single =
       triangle.corners[0].is_single && triangle.corners[1].is_single && triangle.corners[2].is_single;
   plane.is_outside = plane.is_outside || (!is_single && is_edge_on(view, triangle.world));
@@ -163,7 +164,7 @@ inline TileKeyPlane key_plane(const View& view, const ScreenTransform& t, const 
   plane.gy = float(ny * scale);
   plane.k0 = t.orthographic ? float(double(t.far) * double(t.inverse_range) - (det - across) * scale)
                             : float((across + nd) * scale);
-  // NaN counts as too steep. If the triangle reaches beyond near or far, no sample sees the sliver between the planes.
+  // NaN counts as too steep. If the triangle reaches beyond near or far, no sample sees its sliver between the planes.
   if (!(std::abs(plane.gx) <= kSteepest && std::abs(plane.gy) <= kSteepest && std::abs(plane.k0) <= kSteepest)) {
     plane.is_outside = plane.is_clipped;
     plane.gx = plane.gy = 0;

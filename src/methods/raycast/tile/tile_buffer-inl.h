@@ -29,7 +29,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using view_detail::HWY_NAMESPACE::Kept;
 
-// At most as many lanes as a leaf, a node and a block have entries.
+// Vectors have at most as many lanes as a leaf, a node and a block have entries.
 using DF = hn::CappedTag<float, kRayLanes>;
 using DU = hn::RebindToUnsigned<DF>;
 using DI = hn::RebindToSigned<DF>;
@@ -37,7 +37,7 @@ using VF = hn::Vec<DF>;
 using VU = hn::Vec<DU>;
 using VI = hn::Vec<DI>;
 using MF = hn::Mask<DF>;
-// Doubles in whole vectors, beside half vectors of floats.
+// Whole vectors of doubles, and half vectors of floats with as many lanes.
 using DD = hn::CappedTag<double, kRayLanes>;
 using DHF = hn::Rebind<float, DD>;
 using VD = hn::Vec<DD>;
@@ -53,7 +53,7 @@ constexpr float kPixel = kSubPixels;
 /// Half a unit in the last place of a float, relative.
 constexpr float kHalfUlp = 0x1p-24f;
 
-/// A bit for each lane that is set.
+/// Returns a bit for each lane of the mask that is set.
 template <class D>
 HWY_INLINE std::uint32_t BitsOf(D d, hn::Mask<D> mask) {
   std::uint8_t bytes[8] = {};
@@ -188,11 +188,11 @@ class RayTileBuffer {
   float tile_farthest_ = 0;
 };
 
-// The test of sample_rule.h in vectors: which rays meet which triangles, many at a time. Doubtful lanes are decided one
-// by one by the rule itself. They are few, on edges that pass exactly through samples.
+// SidesOf() makes the test of sample_rule.h for many rays and triangles at a time. Doubtful lanes are decided one by
+// one by the rule itself. They are few, because their edges pass exactly through samples.
 
-/// Lanes in which the three determinants are certain. Floats round products monotonically, so a difference has the
-/// right sign unless it is zero.
+/// The lanes in which all three determinants are negative (`front`) or positive (`back`), and the lanes in which one is
+/// zero (`doubtful`). Rounding is monotonic, so a difference of two products has the right sign unless it is zero.
 struct EdgeSides {
   MF front, back, doubtful;
 };
@@ -222,7 +222,7 @@ HWY_NOINLINE MF Resolve(MF met, MF doubtful, VF sx, VF sy, Meets&& meets) {
   return hn::RebindMask(d, hn::MaskFromVec(hn::Load(di, answer)));
 }
 
-/// key_of_distance()
+/// Returns key_of_distance() of each lane.
 HWY_INLINE VF KeyOfDistance(const ScreenTransform& t, VF distance) {
   const DF d;
   const VF one = hn::Set(d, 1.0f);

@@ -4,8 +4,8 @@
 // A. Reshetov, A. Soupikov, J. Hurley. Multi-Level Ray Tracing Algorithm. 2005 (a frustum in place of its rays).
 //
 // sample_rule.h defines what a ray meets, and every path here gives the same bits. Triangles of a few pixels are
-// handled a vector at a time, larger ones by blocks of pixels. Each test that leaves something out (boxes, rectangles,
-// blocks) is padded by a bound of the rounding on both sides.
+// handled a vector at a time, larger ones by blocks of pixels. Each test that excludes boxes, rectangles or blocks is
+// padded by a bound on the rounding of both sides.
 
 #include "raycast/tile/tile_kernel.h"
 
@@ -25,7 +25,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// A half-space of positions relative to the eye: a*x + b*y + c*z + offset.
 struct HalfSpace {
   float n[3], offset;
-  float pad;  // no rounding, here or of a vertex, exceeds this
+  float pad;  // bounds the rounding here and that of a vertex
 };
 
 class TileCaster {
@@ -50,7 +50,7 @@ class TileCaster {
   }
 
  private:
-  /// The plane sign * (row - at * w_row); `sign` makes it positive inside.
+  /// Returns the half-space sign * (row - at * w_row) >= 0. `sign` is such that it contains the tile's rays.
   [[nodiscard]] HalfSpace SidePlane(const std::array<float, 3>& row, float row_offset, double at, double sign) const {
     HalfSpace p{};
     const double w = t_.orthographic ? 0 : 1;
@@ -67,7 +67,8 @@ class TileCaster {
     return p;
   }
 
-  /// Planes through the outermost samples, not the tile's sides: the frustum of the rays that are cast.
+  /// Sets the sides of the frustum of the rays: planes through the tile's outermost samples, not through the tile's
+  /// sides.
   void SetPlanes() {
     const double left = place_.first_x, right = left + (place_.width - 1) * kSubPixels;
     const double top = place_.first_y, bottom = top + (place_.height - 1) * kSubPixels;
@@ -82,26 +83,27 @@ class TileCaster {
     const DF d;
     VF sum[3];
     for (int axis = 0; axis < 3; ++axis)
-      // The end of the box that lies farthest along the normal, or against it, replaces a look at eight corners.
+      // The sign of the normal tells which end of the box is farthest along an axis, so eight corners need not be
+      // tested.
       sum[axis] = hn::Mul(hn::Set(d, p.n[axis]), ends[(p.n[axis] >= 0) == farthest ? 1 : 0][axis]);
     return hn::Add(hn::Add(hn::Add(sum[0], sum[1]), sum[2]), hn::Set(d, p.offset));
   }
 
-  /// An upper bound of the keys at this distance or beyond.
+  /// Returns an upper bound of the keys at this distance or beyond.
   [[nodiscard]] HWY_INLINE VF NearestKey(VF nearest) const {
     const DF d;
     const VF one = hn::Set(d, 1.0f), near = hn::Set(d, t_.near);
     const VF key = t_.orthographic ? hn::Mul(hn::Sub(hn::Set(d, t_.far), nearest), hn::Set(d, t_.inverse_range))
                                    : hn::Div(near, nearest);
     const VF padded = hn::Mul(key, hn::Set(d, 1.0f + 16 * kHalfUlp));
-    // 1 for a distance that is not beyond near, or NaN.
+    // The bound is 1 if the distance is not beyond near, or is NaN.
     return hn::IfThenElse(hn::Gt(nearest, near), hn::Max(hn::Min(padded, one), hn::Zero(d)), one);
   }
 
   /// Pushes the children that the tile may see, the nearest last.
   HWY_INLINE void LookInto(const RayNode& node) {
     const DF d;
-    // Compress stores whole vectors.
+    // Twice the room, because Compactor stores whole vectors.
     alignas(64) std::uint32_t keys[2 * kRayLanes], children[2 * kRayLanes];
     std::size_t count = 0;
     for (std::size_t first = 0; first < node.count; first += kLanes) {
@@ -131,7 +133,8 @@ class TileCaster {
     Push(keys, children, count);
   }
 
-  /// Sorts by counting: the place of a child is the number of farther children. No branch depends on the keys.
+  /// Pushes children, sorted by counting: the position of a child is the number of farther children. No branch depends
+  /// on the keys.
   HWY_INLINE void Push(const std::uint32_t* keys, const std::uint32_t* children, std::size_t count) {
     const DI di;
     // The lowest bits tell equal keys apart; only the order depends on them.
@@ -172,7 +175,7 @@ class TileCaster {
     return hn::Add(hn::Add(hn::Add(x, y), hn::Mul(hn::Set(d, row[2]), delta[2])), hn::Set(d, offset));
   }
 
-  /// make_corner().is_single
+  /// Returns make_corner().is_single of a vector of vertices.
   [[nodiscard]] HWY_INLINE MF IsSingle(VF x, VF y, VF distance) const {
     const DF d;
     const VF reach = t_.orthographic ? hn::Set(d, float(kGuardBand)) : hn::Mul(hn::Set(d, float(kGuardBand)), distance);
@@ -181,7 +184,7 @@ class TileCaster {
     return hn::And(between, hn::And(hn::Le(hn::Abs(x), reach), hn::Le(hn::Abs(y), reach)));
   }
 
-  /// The first and last sample column (or row) that vertices from `low` to `high` may cover.
+  /// The first and last sample column (or row) that a triangle with vertices from `low` to `high` may cover.
   struct Span {
     VF first, last;
   };
@@ -194,7 +197,8 @@ class TileCaster {
     return {hn::Max(first, hn::Zero(d)), hn::Min(last, hn::Set(d, float(count - 1)))};
   }
 
-  /// Inverts to a few units in the last place, by one division. kSingleNear and kSingleFar keep the products in range.
+  /// Inverts three numbers to a few units in the last place, by one division. kSingleNear and kSingleFar keep the
+  /// products in range.
   static HWY_INLINE void Invert(const VF (&d)[3], VF (&inverse)[3]) {
     const VF ab = hn::Mul(d[0], d[1]), all = hn::Div(hn::Set(DF(), 1.0f), hn::Mul(ab, d[2]));
     const VF c = hn::Mul(all, d[2]);
@@ -207,7 +211,8 @@ class TileCaster {
     for (std::size_t first = 0; first < kRayLanes; first += kLanes) MeetLanes(leaf, first);
   }
 
-  /// Triangles of up to 2 x 2 blocks whose every pixel shows something nearer.
+  /// Returns the hidden ones of the triangles that touch up to 2 x 2 blocks: every pixel of the blocks shows something
+  /// nearer.
   [[nodiscard]] HWY_INLINE MF Hidden(VF nearest, VI x0, VI y0, VI x1, VI y1) const {
     const DF d;
     const DI di;
@@ -221,7 +226,8 @@ class TileCaster {
     return hn::And(hn::RebindMask(d, few), hn::Lt(nearest, hn::Min(above, below)));
   }
 
-  /// Puts vertices into the batch, as rays see them. \returns the triangles whose vertices are all single.
+  /// Puts the homogeneous screen positions of vertices into the batch. \returns the triangles whose vertices are all
+  /// single.
   HWY_INLINE MF PlaceCorners(const RayLeaf& leaf, std::size_t first, RayTriangleQueue::Batch& to) const {
     const DF d;
     MF single = hn::MaskFromVec(hn::Zero(d));
@@ -238,7 +244,7 @@ class TileCaster {
     return single;
   }
 
-  /// Screen bounds of triangles: a rectangle of samples, and a greatest key `nearest`.
+  /// Screen bounds of triangles: a rectangle of samples, and an upper bound `nearest` of the keys.
   struct Extent {
     Span across, down;
     VF nearest;
@@ -261,13 +267,13 @@ class TileCaster {
                             : hn::Mul(hn::Set(d, t_.near * (1 + 16 * kHalfUlp)), greatest(inverse))};
   }
 
-  /// Drops hidden triangles, if looking for them has paid lately.
+  /// Drops hidden triangles, if testing for them has paid lately.
   [[nodiscard]] HWY_INLINE MF WithoutHidden(MF kept, VF nearest, VI x0, VI y0, VI x1, VI y1) {
     if (hidden_credit_ <= 0 && (leaves_met_ & 15) != 0) return kept;
     const DF d;
     const std::size_t before = hn::CountTrue(d, kept);
     const MF left = hn::AndNot(Hidden(nearest, x0, y0, x1, y1), kept);
-    // Looking pays if it finds two hidden triangles.
+    // A test costs as much as two hidden triangles save.
     hidden_credit_ = std::min(hidden_credit_ + int(before - hn::CountTrue(d, left)) - 2, kMostCredit);
     return left;
   }

@@ -28,7 +28,8 @@ struct RayTileInput {
   bool streams;  ///< whole rows are written past the caches
 };
 
-/// A child that waits to be visited: the bits of its nearest key above its number, so that the greater is the nearer.
+/// A child that waits to be visited: the bits of its nearest key above its index. So the greater value is the nearer
+/// child.
 using Waiting = std::uint64_t;
 
 /// Buffers of one thread.
@@ -40,11 +41,11 @@ struct RayTileScratch {
   // Blocks of 4 x 4 pixels, row by row, and within a block its pixels row by row.
   alignas(64) float keys[kPixels];
   alignas(64) PrimitiveId ids[kPixels];
-  alignas(64) float farthest[kPixels / 16];  ///< farthest depth of each block
+  alignas(64) float farthest[kPixels / 16];  ///< farthest key of each block
   std::vector<Waiting> stack;
 };
 
-/// Fills the pixels of tile (x, y), counted in tiles, of every sample plane.
+/// Casts the rays of tile (x, y), counted in tiles, and fills its pixels in every sample plane.
 void cast_tile(const RayTileInput& frame, int x, int y, RayTileScratch& scratch, Isa isa);
 
 }  // namespace frontmost::raycast_detail

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Triangles in a tile: those of a few pixels many at a time, larger ones one at a time, by blocks of 4 x 4 pixels.
+// Draws triangles into a tile: triangles of a few pixels many at a time, larger ones one at a time, by blocks of 4 x 4
+// pixels.
 //
 //    +--+--+--+--+      All blocks are classified at once: hidden by earlier triangles (H), wholly outside of an edge
 //    |  |o |o |  |      (o), or wholly inside of all three edges (F). Full blocks need no edges any more, only depths.
@@ -26,11 +27,9 @@ using frontmost::HWY_NAMESPACE::Compactor;
 
 /// From this many blocks on, blocks are classified by the edges first.
 constexpr int kClassifyFrom = 5;
-constexpr float kBlockReach = 0.5f * (kBlock - 1) * kPixel;  // distance of a block's outermost samples from their
-                                                             // middle
+constexpr float kBlockReach = 0.5f * (kBlock - 1) * kPixel;  // from a block's middle to its outermost samples
 
-/// Columns and rows of a block's pixels from its first pixel, and the middles of the tile's blocks from its first
-/// sample.
+/// Offsets of a block's pixels from its first pixel, and of the middles of all blocks from the tile's first sample.
 struct Offsets {
   alignas(64) float x[kBlockPixels], y[kBlockPixels], block_x[kBlockCount], block_y[kBlockCount];
   constexpr Offsets() : x(), y(), block_x(), block_y() {
@@ -94,8 +93,8 @@ class LargeRayTriangles {
     if (hwy::PopCount(open) < std::size_t(kClassifyFrom)) {
       std::uint64_t hidden = 0;
       ForEachBit(open, [&](std::size_t block) {
-        // With few blocks, the greatest key of the whole triangle serves: computing the key of each block would cost
-        // more than it hides.
+        // For few blocks, the greatest key of the whole triangle is used, because computing a key for each block would
+        // cost more than it saves.
         hidden |= std::uint64_t(large.plane.high < buffer_.farthest()[block]) << block;
       });
       open &= ~hidden;
@@ -122,7 +121,7 @@ class LargeRayTriangles {
     return blocks;
   }
 
-  /// Blocks in which every key so far is greater than all keys of the triangle.
+  /// Returns the blocks in which every key so far is greater than all keys of the triangle.
   [[nodiscard]] std::uint64_t Hidden(const TileKeyPlane& plane) const {
     const DF d;
     const float slope = std::abs(plane.gx) + std::abs(plane.gy);
@@ -136,21 +135,22 @@ class LargeRayTriangles {
     for (std::size_t i = 0; i < kBlockCount; i += kLanes) {
       const VF u = hn::Add(hn::Load(d, kOffsets.block_x + i), first_x);
       const VF v = hn::Add(hn::Load(d, kOffsets.block_y + i), first_y);
-      // The key at the middle of the block, plus the change to its nearest sample. No key is greater than the vertices'
-      // keys.
+      // This is the key at the middle of the block, plus the change to its nearest sample, but at most the vertices'
+      // greatest key.
       const VF nearest = hn::Min(hn::Add(start, hn::Add(hn::Mul(u, gx), hn::Mul(v, gy))), high);
       hidden |= std::uint64_t(BitsOf(d, hn::Lt(nearest, hn::Load(d, buffer_.farthest() + i)))) << i;
     }
     return hidden;
   }
 
-  /// E(u, v) = e0 + u*ex + v*ey from the tile's centre, positive inside. |E| <= slack decides nothing.
+  /// Edge functions E(u, v) = e0 + u*ex + v*ey, positive inside; (u, v) is relative to the tile's centre. If |E| <=
+  /// slack, the sign is uncertain.
   struct Edges {
     float ex[3], ey[3], e0[3], slack[3];
     int facing;
   };
 
-  /// \returns false if nothing can be decided in advance.
+  /// Sets the edge functions. \returns false if nothing can be decided in advance.
   bool SetEdges(const std::array<SampleCorner, 3>& corners, Edges& edges) const {
     double x[3], y[3], w[3], size[3], error[3];
     const double half = double(std::max(t_.centre_x, t_.centre_y)) + kSubPixels, tile = 0.5 * kTileSize * kSubPixels;
@@ -159,7 +159,8 @@ class LargeRayTriangles {
       w[k] = t_.orthographic ? 1.0 : c.d;
       x[k] = c.x - double(place_.centre_x) * w[k];
       y[k] = c.y - double(place_.centre_y) * w[k];
-      // The greatest size of a sheared corner, and its rounding by shearing in units in the last place.
+      // `size` is the greatest size of a sheared corner, and `error` its rounding by shearing, in units in the last
+      // place.
       size[k] = std::max(std::abs(x[k]), std::abs(y[k])) + tile * std::abs(w[k]);
       error[k] = half * std::abs(w[k]) + size[k];
     }
@@ -172,7 +173,7 @@ class LargeRayTriangles {
       e[k][2] = x[a] * y[b] - y[a] * x[b];
       const double slack = 8 * double(kHalfUlp) * (error[a] * size[b] + error[b] * size[a]);
       edges.slack[k] = float(slack) * 1.001f;
-      // The determinant of the three corners has the sign of all edges if the triangle is before the eye.
+      // The determinant of the three corners has the sign of all edges if the triangle is in front of the eye.
       det += e[k][2] * w[k];
       det_slack += slack * std::abs(w[k]);
     }
@@ -295,7 +296,7 @@ class LargeRayTriangles {
     });
   }
 
-  /// Met() in doubles, whose products may be rounded: the exact rule decides if two products are equal.
+  /// Met() in doubles. Products of doubles may be rounded, so the exact rule decides if two products are equal.
   [[nodiscard]] HWY_NOINLINE MF Met(const LargeTriangle<WideCorners>& large, const WideCorners& wide, VF sx,
                                     VF sy) const {
     const DF d;
@@ -332,7 +333,7 @@ class LargeRayTriangles {
     return hn::RebindMask(d, hn::MaskFromVec(hn::Load(di, answer)));
   }
 
-  /// One coordinate of sheared().
+  /// Returns one coordinate of sheared().
   static HWY_INLINE VD Sheared(double c, double w, bool is_single, hn::Vec<DHF> s) {
     const DD dd;
     const DHF dh;
@@ -349,10 +350,10 @@ class LargeRayTriangles {
 /// A triangle whose rectangle of samples is at most this wide and high is met together with others.
 constexpr int kWalkLimit = 3;
 
-/// Triangles with vertices in floats, many at a time. They wait in a queue until they fill a vector; triangles of a few
-/// pixels are then met one pixel of each per step, up to 3 x 3. Triangles of a scan often cover one sample or none. Met
-/// one after the other, each would use a lane of a vector. Side by side they use all lanes, and the loop is as long as
-/// the largest of them needs.
+/// Draws triangles with vertices in floats, many at a time. They wait in a queue until they fill a vector. Triangles of
+/// up to 3 x 3 pixels are then tested in step, one pixel of each triangle at a time. Triangles of scanned models often
+/// cover one sample or none. One after the other, each would use one lane of a vector. Together they use all lanes, and
+/// the loop is as long as the largest of them needs.
 class RayTriangleQueue {
  public:
   RayTriangleQueue(const RayTileInput& frame, const TilePlace& place, RayTileBuffer& buffer, LargeRayTriangles& large)
@@ -363,7 +364,7 @@ class RayTriangleQueue {
     VU id, rect;  // x0, y0, x1, y1: pixels of the tile, one byte each from the lowest
   };
 
-  /// Adds the lanes of `kept`; meets the triangles once they fill a vector.
+  /// Queues the triangles in the lanes of `kept`, and draws queued triangles as long as they fill a vector.
   HWY_INLINE void Add(const Batch& batch, MF kept) {
     const Compactor<DF> compact(kept);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -387,7 +388,7 @@ class RayTriangleQueue {
     alignas(64) float gx[kRayLanes], gy[kRayLanes], k0[kRayLanes], low[kRayLanes], high[kRayLanes];
   };
 
-  /// key_plane() for triangles between near and far.
+  /// Sets key_plane() of a vector of triangles between near and far.
   HWY_INLINE void SetKeyPlanes(std::size_t from, Planes& planes) const {
     const DF d;
     const DD dd;
@@ -429,7 +430,7 @@ class RayTriangleQueue {
     hn::Store(hn::IfThenElse(usual, k0, low), d, planes.k0);
   }
 
-  /// Meets the last `count` triangles of the queue.
+  /// Draws the last `count` triangles of the queue.
   void Flush(std::size_t count) {
     const std::size_t from = count_ - count;
     count_ = from;
@@ -531,8 +532,9 @@ class RayTriangleQueue {
     if (large.rect.y1 - large.rect.y0 < kTileSize / 2 || !IsThereAlready(large)) large_.Draw(large);
   }
 
-  /// Whether the last large triangle came again with a higher id, as objects may be placed twice or a million times.
-  /// The lower id hides the copy, unless material culling may leave out the lower id alone.
+  /// Returns whether the triangle is a copy of the last large triangle with a higher id. Objects may be placed in one
+  /// place twice or a million times. The lower id hides the copy, except with material culling, which may cull the
+  /// lower id alone.
   [[nodiscard]] bool IsThereAlready(const LargeTriangle<SingleCorners>& large) {
     if (facing_.culling() == Culling::material) return false;
     if (last_id_ < large.id && large.corners == last_) return true;
@@ -546,7 +548,7 @@ class RayTriangleQueue {
   const TilePlace& place_;
   RayTileBuffer& buffer_;
   LargeRayTriangles& large_;
-  // Room for one vector more than is met at a time, as Compress stores whole vectors.
+  // Room for one vector more than the queue holds, because Compactor stores whole vectors.
   static constexpr std::size_t kRoom = 3 * kRayLanes;
   alignas(64) float x_[3][kRoom], y_[3][kRoom], d_[3][kRoom];
   alignas(64) std::uint32_t id_[kRoom], rect_[kRoom];

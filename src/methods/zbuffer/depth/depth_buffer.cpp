@@ -31,13 +31,15 @@ void check_state(const DepthState& state) {
   check(state.func <= DepthFunc::always, "depth function", "there are eight");
 }
 
-/// 2^(e - 23) for 2^e <= depth < 2^(e + 1), and never less than the least float.
+/// Returns the step between floats at a depth: 2^(e - 23) for 2^e <= depth < 2^(e + 1), but no less than the least
+/// float.
 double float_step(double depth) {
   constexpr int kLeast = -149, kFractionBits = 23;
   return std::ldexp(1.0, depth > 0 ? std::max(std::ilogb(depth) - kFractionBits, kLeast) : kLeast);
 }
 
-/// Validates size and samples; the rest of the view is arbitrary but valid.
+/// Validates size and samples. \returns the number of samples in all pixels. The rest of the view is arbitrary but
+/// valid.
 std::size_t checked_sample_count(int width, int height, int samples) {
   View view;
   view.width = width;
@@ -64,7 +66,7 @@ std::uint32_t stored_depth(DepthFormat format, double depth) {
   if (format == DepthFormat::f32) {
     return bits_as<std::uint32_t>(float(depth) + 0.0f);  // -0 becomes +0: its bits would compare differently
   }
-  // 24 bits times a double are exact but for the rounding itself, whose ties go to even in IeeeScope.
+  // The product is rounded to a double and then to an integer, with ties to even in IeeeScope.
   return std::uint32_t(std::nearbyint(std::clamp(depth, 0.0, 1.0) * steps(format)));
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A draw call of a depth buffer: the meaning of a DepthState for one view and one format, computed once a call, and the
-// kernel that draws placed triangles by it into one tile.
+// A draw call of a depth buffer. A DepthState becomes rules for one view and one format, once a call. The kernel draws
+// placed triangles into one tile by these rules.
 //
 //    DepthState, view, format --rules_for()--> DepthRules: a line from keys to depths, three flags for eight functions
 //    triangle --offset_of()--> its polygon offset                  depth of a sample = limited(line(key) + offset)
 //
-// So the kernel knows no depth function, no direction and no format, except whether depths are floats. Everything else
-// is numbers.
+// So the kernel depends on numbers only: on no depth function, no direction of depths, and no format, except for
+// whether depths are floats.
 #pragma once
 
 #include <span>

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws triangles into a depth buffer: the depth test of every fragment in the order of submission.
+// Draws triangles into a depth buffer, with the depth tests of all fragments in the order of submission.
 //
 //    walk      lane 0: mask of 8 x 8 pixels     lane 1: mask     ...        all triangles of a packet in step
 //    draw      fragments of triangle 0, then those of triangle 1, ...       in the order of submission
 //    rows      larger triangles, one at a time, row by row
 //
-// Coverage does not depend on the order of triangles, so it is found for a packet together. Its fragments are then
-// listed in their order. Depths are computed in double for a vector of fragments, and rounded once, so that every
-// instruction set stores the same bits; the tests come one after the other. Coverage and keys follow tile_kernel.cpp.
+// Coverage does not depend on the order of triangles, so it is found for a whole packet at once. The packet's fragments
+// are then listed in the order of submission. Depths are computed in double for a vector of fragments, and rounded
+// once, so that every instruction set stores the same bits. Depth tests are made one after the other. Coverage and keys
+// follow tile_kernel.cpp.
 
 #include <optional>
 
@@ -165,7 +166,7 @@ class DepthRows {
     const ScreenCutout* cutout;  ///< null if the triangle has no holes
   };
 
-  /// The samples from `place` on that do not look into a hole.
+  /// Returns the samples of `seen` that do not look into a hole. The first lane's sample is at `place`.
   [[nodiscard]] static HWY_NOINLINE hn::Mask<HalfU> Solid(const ScreenCutout& cutout, const glm::ivec2& place,
                                                           hn::Mask<HalfU> seen) {
     const HalfU d;
@@ -184,7 +185,7 @@ class DepthRows {
     return hn::Min(hn::Max(key, hn::Set(d, plane.k_min)), hn::Set(d, plane.k_max));
   }
 
-  /// Keys of a row of samples from `first` on.
+  /// Returns the keys of neighbouring samples of a row, of which `first` is the first.
   [[nodiscard]] static HWY_INLINE hn::Vec<HalfF> KeyOf(const SteepKeys& steep, const glm::ivec2& first) {
     const HalfI d;
     view_detail::HWY_NAMESPACE::SteepColumn column;
@@ -203,7 +204,7 @@ class DepthRows {
       PutWhole(paint, cell, covered, key);
       return;
     }
-    // Memory of the other lanes belongs to another tile, or lies outside the planes.
+    // A copy is drawn to, because memory of the other lanes belongs to another tile, or lies outside the planes.
     HWY_ALIGN_MAX std::uint32_t stored[kHalfLanes] = {}, primitives[kHalfLanes] = {};
     HWY_ALIGN_MAX float keys[kHalfLanes] = {};
     const Cell copy{stored, primitives, keys, place};
@@ -317,7 +318,7 @@ class DepthPackets {
     return call_.rules.offset_of(keys.gx(), keys.gy(), low, high);
   }
 
-  /// Lanes of triangles with holes. Rows draw them, as only rows test holes.
+  /// Returns the lanes of triangles with holes. These are drawn by rows, because only rows test for holes.
   [[nodiscard]] HWY_NOINLINE MI HaveHoles() const {
     HWY_ALIGN_MAX std::uint32_t id[kMaxLanes];
     HWY_ALIGN_MAX std::int32_t lanes[kMaxLanes] = {};
@@ -326,7 +327,8 @@ class DepthPackets {
     return hn::MaskFromVec(hn::Load(DI(), lanes));
   }
 
-  /// Finds the pixels of each triangle in which this sample is covered, within eight by eight pixels of its first.
+  /// Finds the pixels in which each triangle covers this sample: masks of eight by eight pixels, from the triangle's
+  /// first pixel on. Triangles that masks cannot hold are drawn by rows.
   HWY_INLINE void Walk(std::size_t sample) {
     const DI d;
     const glm::ivec2 offset = call_.planes.samples[sample];
@@ -345,7 +347,7 @@ class DepthPackets {
     const VI sy = hn::Add(hn::ShiftLeft<8>(rows.first), hn::Set(d, offset.y));
     const int most_x = hn::GetLane(hn::MaxOfLanes(d, width)), most_y = hn::GetLane(hn::MaxOfLanes(d, height));
     PacketEdges row = EdgesAt(packet_, sx, sy);
-    VI mask[2] = {hn::Zero(d), hn::Zero(d)};  // of four rows each
+    VI mask[2] = {hn::Zero(d), hn::Zero(d)};  // four rows in each mask
     for (int y = 0; y < most_y; ++y) {
       const VI row_width = hn::IfThenElseZero(hn::Gt(height, hn::Set(d, y)), width);
       VI e0 = row.e[0], e1 = row.e[1], e2 = row.e[2], bit = hn::Set(d, 1 << (y % 4 * 8)), bits = mask[y / 4];
@@ -462,13 +464,13 @@ class DepthPackets {
   Packet packet_;
   VF key_[3];
   VU id_;
-  MI walkable_;  // drawn many at once
+  MI walkable_;  // lanes of triangles that may be drawn many at once
   std::size_t count_ = 0;
   double offset_[kMaxLanes] = {};
   // State of the packet at one sample.
-  std::uint64_t by_row_ = 0, drawn_ = 0;         // lanes that rows draw; those and all lanes that cover a pixel
+  std::uint64_t by_row_ = 0, drawn_ = 0;         // lanes drawn by rows; all lanes that are drawn
   VI from_x_, from_y_;                           // from the key plane's origin to the sample of the first pixel
-  HWY_ALIGN_MAX std::int32_t first_[kMaxLanes];  // index of the first pixel in the tile
+  HWY_ALIGN_MAX std::int32_t first_[kMaxLanes];  // index of each triangle's first pixel, counted from the tile's first
   HWY_ALIGN_MAX std::uint32_t mask_[2][kMaxLanes];
   std::uint32_t references_[kMaxLanes * kWalkLimit * kWalkLimit + kMaxLanes];
 };

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws one tile from batches: the same triangles into the same buffer as tile_kernel.cpp, from another source.
 //
-// A batch is left out of a tile if its nearest key is hidden in all blocks of the tile that it touches. Its triangles
-// come from columns, in runs. Small triangles are queued like those of clusters; large ones are records and come first.
+// A batch is left out of a tile if its nearest key is hidden in all blocks of the tile that it touches. The batch's
+// triangles are read from its columns, in runs. Small triangles are queued like those of clusters; large triangles are
+// records and are drawn first.
 
 #include <bit>
 
@@ -25,8 +26,8 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// Writes a tile to a VisiblePixels: sample 0 as planes, and the other samples if a pixel's samples differ. Rows are
-/// read twice: first to find mixed pixels, which gives the row's share of `others`, then to fill that share. Tiles take
-/// their shares as they come, so the order of `others` depends on threads; the samples of a pixel do not.
+/// read twice: first to count mixed pixels and reserve their entries of `others`, then to fill these entries. Tiles
+/// reserve entries as they come, so the order of `others` depends on threads, but the samples of a pixel do not.
 class TilePixels {
  public:
   TilePixels(const Picture& picture, const Tile& tile) : picture_(picture), to_(*picture.pixels), tile_(tile) {}
@@ -116,7 +117,8 @@ class TilePixels {
   const Tile& tile_;
 };
 
-// After this many triangles, the painter finds again which blocks hide, or whether testing pays.
+// After this many triangles, the painter decides again whether testing for hidden triangles pays. If so, it updates the
+// farthest keys of the blocks. Otherwise, testing pauses for kMostIdle windows.
 constexpr std::size_t kWindow = 512;
 constexpr int kMostIdle = 7;
 
@@ -151,7 +153,7 @@ class BatchPainter {
     small_.Finish();
   }
 
-  /// Starts testing for hidden triangles: the tile's earlier triangles hide much of the later ones.
+  /// Starts testing for hidden triangles, because the triangles drawn so far hide much of what follows.
   void LookForHidden() {
     idle_ = kMostIdle;
     NextWindow();
@@ -164,7 +166,7 @@ class BatchPainter {
     const auto append = [&](std::size_t count, const auto& fetch) HWY_ATTR { Append(count, fetch, from); };
     for (const TileRun& run : batch.in_tile(job_.column(), job_.row())) reader_.Read(run, append);
     reader_.Finish(append);
-    // Queued triangles stay within the batch's blocks, so these marks stay valid until they are drawn.
+    // Triangles that wait in the queue lie within the batch's blocks, so these marks hold for them, too.
     buffer_.MarkDrawn(blocks_);
   }
 
@@ -198,7 +200,7 @@ class BatchPainter {
     if (met_ >= kWindow) NextWindow();
   }
 
-  /// Puts triangles into the queue by `store`.
+  /// Appends triangles to the queue. store(vector, column) writes one column of them.
   template <class Store>
   HWY_INLINE void Put(const VI (&x)[3], const VI (&y)[3], const VI (&key)[3], VU id, const Store& store) {
     TriangleQueue& queue = small_.queue();
@@ -234,7 +236,7 @@ class BatchPainter {
   LargeTriangles large_;
   SmallTriangles small_;
   RunReader reader_;
-  std::uint64_t blocks_ = 0;  // blocks of the batch
+  std::uint64_t blocks_ = 0;  // blocks of the tile that the batch touches
   // State of this window: triangles, hidden triangles, and whether hidden triangles are looked for.
   std::size_t met_ = 0, hidden_ = 0;
   bool asks_ = false;

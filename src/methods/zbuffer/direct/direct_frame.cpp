@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One picture without clusters. Batches of triangles in the scene's order are placed on the screen, sorted into tiles,
-// and drawn, some hundred batches at a time. Visibility is a minimum, so the picture of earlier batches is simply
-// continued with the next ones.
+// and drawn, some hundred batches at a time. Visibility is a minimum, so later batches are simply drawn into the
+// picture of the earlier ones.
 //
 // The first batches are the nearest, judging by a few triangles of each. They hide most of the later batches, which are
 // then left out as a whole. `farthest` holds the farthest key of the samples of every block of the picture.
@@ -22,24 +22,25 @@
 namespace frontmost::zbuffer_detail {
 namespace {
 
-// Half a million triangles at once. A large scene starts with fewer, so that triangles behind them need not be looked
-// at.
+// Half a million triangles are placed at once. A large scene starts with fewer, so that triangles hidden by these need
+// not be placed.
 constexpr std::size_t kBatchesAtOnce = 256, kBatchesAtFirst = 32, kFewBatches = 128;
 
-/// A batch, and the triangles of its source that do not fit into columns.
+/// A batch in three parts, by how its triangles are drawn.
 struct DirectBatch {
   TriangleBatch small;
   std::optional<TriangleBatch> cutouts;  ///< small triangles that may have holes
   std::vector<TriangleRecord> records;   ///< large triangles and clipped triangles
 };
 
-/// Memory for filling a batch, one a thread.
+/// The scratch memory of one thread for filling batches.
 struct DirectScratch : PlaceScratch {
   Buffer<BatchColumns> spare{1};
 };
 
-/// A batch and its nearness. The far end of a slice is at most 1.5 times as far as its near end. Finer slices hide no
-/// more, and lose the order of the file, which is the order of memory.
+/// The index of a batch, and the slice of depth that its nearest key lies in. The far end of a slice is at most 1.5
+/// times as far as its near end. Finer slices hide no more, and lose the order of the file, which is the order of
+/// memory.
 struct Near {
   std::uint32_t slice, batch;
 
@@ -116,7 +117,8 @@ class DirectFrame {
               [](const Near& a, const Near& b) { return a.slice != b.slice ? a.slice > b.slice : a.batch < b.batch; });
   }
 
-  /// The greatest key of some triangles of a batch; more than any key if a triangle is behind the eye.
+  /// Returns the greatest key of some triangles of a batch, or 2, more than any key, if a vertex is nearer than the
+  /// near plane.
   [[nodiscard]] float nearest_of(const BatchSource& source) const {
     constexpr std::size_t kTriangles = 4;
     float nearest = 0;
@@ -136,9 +138,9 @@ class DirectFrame {
     return nearest;
   }
 
-  /// False if nearer blocks cover all of the vertices, or if none of the vertices is on the screen.
+  /// Returns false if blocks drawn so far hide the bounds of the vertices, or if these bounds are off the screen.
   [[nodiscard]] bool may_be_seen(const SnappedVertices& vertices) const {
-    // A negative key holds out codes. A batch is not seen if all vertices have out codes with one plane in common.
+    // `common` is negative if all vertices have out codes. Nothing of them is seen if these out codes share a plane.
     if (!vertices.all_plain) return vertices.common >= 0 || (vertices.common & kOutside) == 0;
     const View& view = visible_.view;
     const PixelRect rect =
@@ -226,10 +228,10 @@ class DirectFrame {
     });
   }
 
-  /// `is_last`: no batch comes afterwards, so tiles that are empty stay empty.
+  /// Draws the placed batches. If `is_last` is true, no batches follow, so tiles that are still empty are filled.
   void draw_placed(const PixelPlanes* pixels, bool is_last) {
     const View& view = visible_.view;
-    // The memory is touched for the first time; zbuffer.cpp explains the threshold.
+    // The planes are touched for the first time; zbuffer.cpp explains the threshold.
     const bool streams = view.sample_count() * (sizeof(PrimitiveId) + sizeof(float)) >= std::size_t(32) << 20;
     const Picture picture{view,
                           sample_offsets(view.samples),
@@ -262,13 +264,13 @@ class DirectFrame {
   ScreenTransform transform_;
   PlaceTarget target_;
   Visible visible_;
-  std::vector<std::uint8_t> is_drawn_;  // by tile
+  std::vector<std::uint8_t> is_drawn_;  // by tile: 1 if batches were drawn to it
   std::vector<float> farthest_;         // by tile and block: no sample of the block is farther than this key
   std::vector<BatchSource> sources_;
   std::vector<Near> order_;
   // State of the batches that are placed.
   std::vector<DirectBatch> batches_;
-  std::vector<const TriangleBatch*> nearest_first_;  // batches with cutouts from `first_cutout_` on
+  std::vector<const TriangleBatch*> nearest_first_;  // solid batches, then batches with cutouts from `first_cutout_` on
   std::size_t first_cutout_ = 0;
   RecordLists records_;
   TileLists batch_lists_;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// One picture of a scene straight from its own arrays, and the kernel that draws a tile of it from batches.
+// Draws one picture of a scene straight from the scene's own arrays, and declares the kernel that draws a tile from
+// batches.
 //
 //    scene's arrays --survey--> batches, nearest first --place--> on the screen --lists--> tiles --draw_batches-->
-//       repeated for the next some hundred batches, with the planes and `farthest` as they are by then
+//       repeated for every few hundred batches, drawn into the planes and `farthest` of those before
 //
 // Making clusters pays off from the second picture on. The first picture is drawn without clusters, straight from the
 // loaded arrays, and has the same bits.
@@ -18,11 +19,12 @@
 
 namespace frontmost::zbuffer_detail {
 
-/// The picture of ZBuffer::draw(), to the bit, without clusters. O(triangles + covered samples). Memory beside the
-/// result: some 30 MiB, at most as much again for triangles with holes, and 100 bytes for each large or clipped
-/// triangle of half a million in a row.
+/// Returns the picture of ZBuffer::draw(), equal to the bit, without clusters. Time: O(triangles + covered samples).
+/// Memory beside the result: some 30 MiB, at most as much again for triangles with holes, and 100 bytes for each large
+/// or clipped triangle among the half million that are placed at once.
 [[nodiscard]] Visible draw_directly(const PlacedScene& scene, const View& view, const Execution& execution);
-/// draw_directly(), by pixels. Scenes of more than a quarter of a million triangles also need the planes for a while.
+/// draw_directly() for a VisiblePixels. Scenes of more than a quarter of a million triangles also need the planes of a
+/// Visible for a while.
 [[nodiscard]] VisiblePixels draw_pixels_directly(const PlacedScene& scene, const View& view,
                                                  const Execution& execution);
 
@@ -34,16 +36,16 @@ struct BatchFrame : Picture {
 
 /// One tile, and the records and batches that may be seen in it.
 struct BatchJob : Tile {
-  /// Nearest first.
+  /// Indices of records and of batches, nearest first.
   struct Items {
     std::span<const std::uint32_t> records, batches;
 
     [[nodiscard]] bool is_empty() const { return records.empty() && batches.empty(); }
   };
   Items solid, cutouts;
-  bool is_drawn;    ///< the tile shows something already, which the planes hold
-  bool is_last;     ///< nothing will be drawn to it any more
-  float* farthest;  ///< keys of the 64 blocks: read, and updated unless is_last
+  bool is_drawn;    ///< true if earlier batches were drawn to the tile; the planes hold the result
+  bool is_last;     ///< true if no batches follow
+  float* farthest;  ///< farthest keys of the 64 blocks: read, and updated unless is_last
 
   [[nodiscard]] bool is_empty() const { return solid.is_empty() && cutouts.is_empty(); }
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places triangles into batches: vertices, pixel rectangles and facing, many at a time. Small triangles that can be
-// snapped whole are oriented, and appended to the columns of the batch. The numbers of all others go to `apart`, and
-// they are clipped one by one. A triangle that has no sample between its bounds is left out at once.
+// Places triangles into batches: snaps vertices, and finds pixel rectangles and facing, many at a time. Small triangles
+// that can be snapped whole are oriented, and appended to the columns of the batch. The indices of all other triangles
+// go to `apart`, to be clipped one by one. A triangle that has no sample inside its bounding box is left out at once.
 
 #include "zbuffer/place/triangle_batch.h"
 
@@ -22,8 +22,8 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 namespace screen = view_detail::HWY_NAMESPACE;
 
-/// Calls visit(first, pointer to a whole vector of triples) for all triples. The last vector may overlap the one
-/// before.
+/// Calls visit(first, pointer to a whole vector of triples) for all triples. The last vector is filled up with copies
+/// of the last triple.
 template <class Triple, class Visit>
 HWY_INLINE void ForTriples(std::span<const Triple> triples, const Visit& visit) {
   const std::size_t lanes = hn::Lanes(DF());
@@ -35,12 +35,13 @@ HWY_INLINE void ForTriples(std::span<const Triple> triples, const Visit& visit) 
   visit(i, &rest[0].x);
 }
 
-/// Vertices before they are put on the screen.
+/// A vector of vertices in world space.
 struct WorldVertices {
   VF x, y, z;
 };
 
-/// The planes of the clip volume that a vertex is certainly outside of, a bit each, in the bits of a negative float.
+/// Computes out codes: one bit for each plane of the clip volume that a vertex is certainly outside of, in the low bits
+/// of a negative float.
 class OutCodes {
  public:
   explicit OutCodes(const ScreenTransform& t) : t_(t) {}
@@ -52,8 +53,8 @@ class OutCodes {
     const VF slack_x = Slack(t_.x_row, t_.x_offset, from_eye), slack_y = Slack(t_.y_row, t_.y_offset, from_eye);
     const VF slack_d = Slack(t_.d_row, t_.d_offset, from_eye);
     const VF guard = hn::Set(d, float(kGuardBand) * 1.000001f);
-    // The test is valid behind the eye as well: v.x - reach is linear over the whole triangle, so it is positive
-    // everywhere if it is positive at all vertices.
+    // The test also holds for triangles behind the eye: v.x - reach is linear over the whole triangle, so it is
+    // positive everywhere if it is positive at all vertices.
     const VF reach = t_.orthographic ? guard : hn::Mul(guard, hn::Add(v.d, slack_d));
     VI code = hn::Set(DI(), kNone);
     code = hn::Or(code, Bit(hn::Lt(hn::Add(v.d, slack_d), hn::Set(d, t_.near)), 1));
@@ -65,7 +66,7 @@ class OutCodes {
     return hn::BitCast(d, code);
   }
 
-  /// Triangles whose vertices are all outside of one plane, found from the vertices' keys.
+  /// Returns the triangles whose vertices are all outside one plane, given the vertices' keys.
   [[nodiscard]] static HWY_INLINE MI Outside(VF a, VF b, VF c) {
     const DI d;
     const VI all = hn::And(hn::BitCast(d, a), hn::And(hn::BitCast(d, b), hn::BitCast(d, c)));
@@ -73,7 +74,7 @@ class OutCodes {
   }
 
  private:
-  // The sign and the top of the exponent: negative, finite, and with room for the six bits below.
+  // A negative and finite float whose low six bits are free for out codes.
   static constexpr std::int32_t kNone = std::int32_t(0xC0000000);  // -2
 
   [[nodiscard]] static HWY_INLINE VI Bit(hn::Mask<DF> mask, std::int32_t bit) {
@@ -178,7 +179,7 @@ class Placer {
     const std::size_t at = batch_.count;
     for (int k = 0; k < 3; ++k) {
       const Corners& corner = placed.corners[k];
-      // Bits of keys order as the keys do while no key is negative; kept triangles have no negative key.
+      // Kept triangles have no negative key, so the bits of keys have the same order as the keys.
       const VI key = hn::GatherIndex(d, reinterpret_cast<const std::int32_t*>(vertices_.key.data()), corner.number);
       compact.Store(corner.x, to.x[k] + at);
       compact.Store(corner.y, to.y[k] + at);
@@ -214,8 +215,8 @@ class Placer {
     return hn::GatherIndex(DF(), vertices_.key.data(), corners.number);
   }
 
-  /// Triangles whose vertices could all be snapped. Other triangles are clipped, unless they are wholly outside of a
-  /// plane.
+  /// Returns the triangles whose vertices could all be snapped. Marks the other triangles for clipping, unless they are
+  /// wholly outside one plane.
   [[nodiscard]] HWY_NOINLINE MI Plain(MI live, const Corners (&c)[3]) {
     const DI d;
     const DF df;
@@ -238,7 +239,8 @@ class Placer {
     greatest_y_ = hn::IfThenElse(placed.kept, hn::Max(greatest_y_, placed.rows.last), greatest_y_);
   }
 
-  /// BatchColumns::tiles. Eight bits a number are enough, as the largest image has 128 tiles either way.
+  /// Returns BatchColumns::tiles of each triangle. Eight bits a number are enough, because the largest image has 128
+  /// tiles in either direction.
   [[nodiscard]] static HWY_INLINE VI TilesOf(const PixelRange& columns, const PixelRange& rows) {
     static_assert(kTileSize == 1 << 7);
     const VI first = hn::Or(hn::ShiftRight<7>(columns.first), hn::ShiftLeft<8>(hn::ShiftRight<7>(rows.first)));

@@ -4,8 +4,9 @@
 //    triangle    0     1     2     3     4          consecutive triangles that touch the same tiles are one run
 //    tiles       A     A     A,B   A,B   B          runs of A: [0,1] [2,3]      runs of B: [2,3] [4]
 //
-// If triangles are strewn, every run has one triangle, and lists get as long as the batch. Such triangles are first
-// sorted by their tiles. Sorting loses the order of submission, which only pictures without such an order can afford.
+// If triangles are scattered over the picture, every run has one triangle, and lists get as long as the batch. Such
+// triangles are first sorted by their tiles. Sorting loses the order of submission, so it is left out for pictures
+// that depend on this order.
 
 #include "zbuffer/place/submission.h"
 
@@ -40,7 +41,7 @@ TriangleRecord TriangleBatch::record(std::size_t i) const {
   return record;
 }
 
-/// Calls visit(tiles, run). \returns how many runs there are.
+/// Calls visit(tiles, run) for each run. \returns the number of runs.
 template <class Visit>
 std::size_t TriangleBatch::visit_runs(const Visit& visit) const {
   const std::uint32_t* tiles = columns().tiles;
@@ -55,7 +56,7 @@ std::size_t TriangleBatch::visit_runs(const Visit& visit) const {
 }
 
 void TriangleBatch::gather_strewn(Buffer<BatchColumns>& spare) {
-  // Shorter runs, on average, are gathered lane by lane when drawn, which costs more than sorting once.
+  // If runs are shorter than this on average, drawing gathers them lane by lane, which costs more than sorting once.
   constexpr std::size_t kShortRun = 4;
   if (visit_runs([](const SmallTiles&, const TileRun&) {}) <= count / kShortRun) return;
   sort_by_tiles(spare[0]);
@@ -73,7 +74,7 @@ void TriangleBatch::list_tiles() {
     });
   };
   const auto tile_count = std::size_t(all.count());
-  // Filling a list advances its beginning, so beginnings are stored one place further on at first.
+  // Filling a list advances its beginning, so beginnings are first stored one entry after their final place.
   begin_.assign(tile_count + 2, 0);
   visit([&](std::size_t tile, const TileRun&) { ++begin_[tile + 2]; });
   for (std::size_t tile = 0; tile < tile_count; ++tile) begin_[tile + 2] += begin_[tile + 1];
@@ -81,7 +82,7 @@ void TriangleBatch::list_tiles() {
   visit([&](std::size_t tile, const TileRun& run) { runs_[begin_[tile + 1]++] = run; });
 }
 
-/// Sorts by the first tile, then by whether triangles reach into the next tiles.
+/// Sorts triangles by their first tile, then by whether they reach into the next column or row of tiles.
 void TriangleBatch::sort_by_tiles(BatchColumns& sorted) {
   const TileRect all = tiles();
   const BatchColumns& from = columns();
@@ -137,7 +138,8 @@ void OrderedBatch::list_tiles(const View& view) {
 
 void OrderedBatch::append_single(const PlaceTarget& target, const ClippedPolygon& polygon, PrimitiveId id) {
   if (polygon.count == 0) return;
-  // Keys of the whole polygon, not of each piece: the polygon offset of f32 depends on the primitive's greatest depth.
+  // `low` and `high` bound the keys of the whole polygon, not of a piece, because the polygon offset of f32 depends on
+  // the primitive's greatest depth.
   float low = polygon.corners[0].key, high = low;
   for (int i = 0; i < polygon.count; ++i) {
     low = std::min(low, polygon.corners[std::size_t(i)].key);
@@ -163,8 +165,8 @@ std::vector<MeshRange> ranges_within(const PlacedScene& placed, const PrimitiveR
 std::size_t batches_at_once(const View& view) {
   constexpr std::size_t kMostItems = std::size_t(1) << 26;  // 256 MiB
   constexpr std::size_t kMost = 128;                        // 2^18 triangles
-  // Clipping makes at most seven pieces of a triangle. Pieces do not overlap, so each is in one and a half tiles on
-  // average.
+  // Clipping makes at most seven pieces of a triangle. Pieces do not overlap, so a tile touches one and a half of them
+  // on average.
   return std::clamp<std::size_t>(kMostItems / (Tile::count(view) * MeshRange::most_triangles), 1, kMost);
 }
 

@@ -80,11 +80,12 @@ class OrderedBatch {
 
 /// The parts of the scene's ranges that lie within `range`, in order.
 [[nodiscard]] std::vector<MeshRange> ranges_within(const PlacedScene& placed, const PrimitiveRange& range);
-/// How many batches may be placed at once: their lists stay within 256 MiB even if every triangle fills the image.
+/// Returns how many batches may be placed at once, so that their lists stay within 256 MiB even if every triangle fills
+/// the image.
 [[nodiscard]] std::size_t batches_at_once(const View& view);
 
-/// Calls draw(tile, batch) for every tile and every batch of the range that is in the tile. Batches come in order in
-/// each tile; different tiles are drawn at the same time.
+/// Calls draw(tile, batch) for every tile and every batch of `range` that is in the tile. In each tile, batches come in
+/// order; several tiles are drawn at the same time.
 template <class Draw>
 void submit(const Surfaces& surfaces, const View& view, const PrimitiveRange& range, const Execution& execution,
             const Draw& draw) {

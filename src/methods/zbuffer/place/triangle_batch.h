@@ -6,8 +6,8 @@
 //     -> place_triangles()    small triangles into the batch, the numbers of the others into `apart`
 //     -> polygon_of()         one of the others, clipped if needed
 //
-// Neighbours in a file are mostly neighbours on the screen, too, so most tiles of a batch hold long runs of its
-// columns. Otherwise the batch is merely in more tiles.
+// Neighbours in a file are mostly neighbours on the screen, too, so a batch has long runs of triangles in most of its
+// tiles. If they are not neighbours on the screen, the batch is merely in more tiles.
 #pragma once
 
 #include <span>
@@ -19,8 +19,8 @@
 
 namespace frontmost::zbuffer_detail {
 
-/// Triangles with vertices no farther apart than 124 pixels, one array a vertex, from the image's top left. Areas are
-/// positive, and each triangle has a sample within its bounds.
+/// Triangles with vertices no farther apart than 124 pixels. Each coordinate of each vertex has an array; the origin is
+/// the image's top left. Areas are positive, and each triangle has a sample inside its bounding box.
 struct BatchColumns {
   static constexpr std::size_t room = MeshRange::most_triangles + 16;  ///< a store may write a whole vector
 
@@ -60,7 +60,7 @@ class TriangleBatch {
   [[nodiscard]] BatchColumns& columns() { return columns_[0]; }
   [[nodiscard]] const BatchColumns& columns() const { return columns_[0]; }
   [[nodiscard]] TriangleRecord record(std::size_t i) const;
-  /// Moves the triangles for which `is_out(id)` holds to another batch, which is empty.
+  /// Moves the triangles for which `is_out(id)` holds to `out`. Precondition: `out` is empty.
   template <class IsOut>
   void extract(const IsOut& is_out, TriangleBatch& out) {
     std::size_t kept = 0;
@@ -78,13 +78,13 @@ class TriangleBatch {
     count = kept;
   }
 
-  /// Groups triangles by tile if neighbours are strewn over the picture, as in a soup. Loses their order. `spare` takes
-  /// the place of the columns.
+  /// Sorts triangles by tile if neighbours are scattered over the picture, as in a polygon soup. This loses their
+  /// order. The sorted columns are made in `spare`, and swapped with the old ones.
   void gather_strewn(Buffer<BatchColumns>& spare);
   /// Makes the lists by tile, once all triangles are placed.
   void list_tiles();
   [[nodiscard]] TileRect tiles() const { return TileRect(rect); }
-  /// The runs of a tile, from the first triangle to the last. Precondition: list_tiles().
+  /// The runs of a tile, from the first triangle to the last. Precondition: list_tiles() was called.
   [[nodiscard]] std::span<const TileRun> in_tile(int column, int row) const {
     if (count == 0) return {};
     const TileRect all = tiles();
@@ -99,7 +99,7 @@ class TriangleBatch {
   void sort_by_tiles(BatchColumns& sorted);
 
   Buffer<BatchColumns> columns_;
-  std::vector<std::uint32_t> begin_;  // by tile
+  std::vector<std::uint32_t> begin_;  // by tile: the first of its runs_
   std::vector<TileRun> runs_;
 };
 
@@ -108,11 +108,12 @@ struct BatchSource {
   std::size_t begin, end;
 };
 
-/// Joins consecutive ranges into batches: most scenes have a few large instances, some many small ones.
+/// Joins consecutive ranges into batches, because some scenes have many small instances instead of a few large ones.
 [[nodiscard]] std::vector<BatchSource> batch_sources(std::span<const MeshRange> ranges);
 
-/// Mask of out codes: set bits in the key of a vertex that cannot be snapped, a negative float, name the planes of the
-/// clip volume that the vertex is certainly outside of. A triangle is not seen if all its vertices share a bit.
+/// Mask of out codes. A vertex that cannot be snapped has a negative key. Each of these bits of such a key is set if
+/// the vertex is certainly outside one plane of the clip volume. A triangle is not seen if all its vertices share a
+/// bit.
 inline constexpr std::int32_t kOutside = 63;
 
 /// Vertices on the screen, and their bounds.
@@ -120,10 +121,11 @@ struct SnappedVertices {
   std::vector<std::int32_t> x, y;  ///< from the image's top left
   std::vector<float> key;          ///< less than 0 if the vertex cannot be snapped as it is
 
-  bool all_plain = true;       ///< every vertex can be snapped as it is; if false, the next three mean nothing
+  bool all_plain = true;       ///< every vertex can be snapped as it is; if false, `low`, `high` and `nearest` mean
+                               ///< nothing
   glm::ivec2 low{0}, high{0};  ///< bounds on the screen
   std::int32_t nearest = 0;    ///< bits of the greatest key
-  std::int32_t common = -1;    ///< bits that all keys have in common
+  std::int32_t common = -1;    ///< bits that are set in all keys
 
   void make_room(std::size_t count) {
     if (x.size() >= count) return;
@@ -133,21 +135,23 @@ struct SnappedVertices {
   }
 };
 
-/// Memory for placing, one a thread.
+/// The scratch memory of one thread for placing triangles.
 struct PlaceScratch : WorldScratch {
   SnappedVertices vertices;
   std::vector<std::uint32_t> apart;
 };
 
-/// Puts the vertices on the screen.
+/// Transforms and snaps the vertices, and finds their bounds.
 void snap_vertices(const PlaceTarget& target, std::span<const glm::vec3> positions, SnappedVertices& vertices);
 
-/// Appends triangles that may cover a sample to the batch, in their order. Appends the numbers of triangles that are
-/// drawn one by one to `apart`: large ones, and ones that may need clipping. Precondition: the columns have room.
+/// Appends small triangles that may cover a sample to the batch, in their order. Appends to `apart` the indices of
+/// triangles that are drawn one by one: large ones, and ones that may need clipping. Precondition: the columns have
+/// room.
 void place_triangles(const PlaceTarget& target, const WorldTriangles& triangles, const SnappedVertices& vertices,
                      TriangleBatch& batch, std::vector<std::uint32_t>& apart);
 
-/// One of the triangles, clipped if it cannot be snapped whole. Has no corners if a vertex is not finite.
+/// Returns one of the triangles, clipped if a vertex cannot be snapped. The result has no corners if a vertex is not
+/// finite.
 [[nodiscard]] ClippedPolygon polygon_of(const PlaceTarget& target, const WorldTriangles& triangles,
                                         const SnappedVertices& vertices, std::size_t triangle);
 

@@ -37,7 +37,7 @@ class LargeTriangles {
     for (const glm::ivec2& s : picture.samples) low_ = glm::min(low_, s), high_ = glm::max(high_, s);
   }
 
-  /// Draws the records that `numbers` names. Records are nearest first, vertices from the image's top left.
+  /// Draws the records whose indices are `numbers`, nearest first. Their vertices are relative to the image's top left.
   void DrawAll(std::span<const TriangleRecord> records, std::span<const std::uint32_t> numbers) {
     for (const std::uint32_t i : numbers) {
       TriangleRecord record = records[i];
@@ -132,12 +132,12 @@ class LargeTriangles {
   };
 
   /// Key bounds of one triangle, by block: the nearest key, the keys at the four outermost samples, and `slack`. The
-  /// slack bounds the rounding error of the difference between such a key, or any sample's key, and the exact plane.
+  /// slack bounds the rounding errors of such a key and of any sample's key together.
   struct Reach {
     HWY_ALIGN_MAX float nearest[BlockBounds::count], corner[4][BlockBounds::count], slack[BlockBounds::count];
   };
 
-  /// `none`: blocks in which no sample lies in the triangle. `all`: blocks of which every sample does.
+  /// Blocks that are known to have no pixel, or to have every pixel, covered at one sample.
   struct Cover {
     std::uint64_t none = 0, all = 0;
   };
@@ -152,12 +152,13 @@ class LargeTriangles {
     std::uint64_t whole = open;
     for (std::size_t s = 0; s < picture_.samples.size() && open != 0; ++s)
       whole &= DrawSample<Rows>(r, plane, rect, s, open, reach);
-    if (buffer_.minds_holes()) return;  // what lies behind a triangle with holes is not hidden
+    if (buffer_.minds_holes()) return;  // what lies behind a triangle with holes may be seen
     for (whole &= open; whole != 0; whole &= whole - 1)
       KeepPlane(int(hwy::Num0BitsBelowLS1Bit_Nonzero64(whole)), plane, reach);
   }
 
-  /// Calls visit(first block, column, row of the block in each lane) for all blocks that may touch `rect`.
+  /// Calls visit(first, column, row) for vectors of blocks, among them all that touch `rect`: the number of the
+  /// vector's first block, and the block's column and row in each lane.
   template <class Visit>
   static HWY_INLINE void ForBlocks(const PixelRect& rect, const Visit& visit) {
     const DI d;
@@ -185,9 +186,10 @@ class LargeTriangles {
       const VF k0 = hn::Set(df, p.k0);
       const VF key[4] = {hn::Add(hn::Add(k0, left), top), hn::Add(hn::Add(k0, right), top),
                          hn::Add(hn::Add(k0, left), bottom), hn::Add(hn::Add(k0, right), bottom)};
-      // Three roundings, each of at most 2^-24 of this sum, at the corner and at any sample make 6 * 2^-24. Steep
-      // triangles have as many, as both their plane and their keys are rounded. The factor 8 and the constant leave a
-      // margin, also for numbers so small that roundings are not relative.
+      // A key has three rounding errors, each of at most 2^-24 of this sum. The key at a corner and the key at a sample
+      // together make 6 * 2^-24. Steep triangles have as many errors, because both their plane and their keys are
+      // rounded. The factor 8 and the constant leave a margin, also for numbers so small that roundings are not
+      // relative.
       const VF sum =
           hn::Add(hn::Abs(k0), hn::Add(hn::Max(hn::Abs(left), hn::Abs(right)), hn::Max(hn::Abs(top), hn::Abs(bottom))));
       const VF slack = hn::Add(hn::Mul(sum, hn::Set(df, 8.0f / 16777216.0f)), hn::Set(df, 1e-42f));
@@ -211,8 +213,8 @@ class LargeTriangles {
     return hn::Mul(hn::ConvertTo(df, hn::Add(block, hn::Set(DI(), offset))), hn::Set(df, gradient));
   }
 
-  /// Keeps the plane of a triangle that covers all samples of the block. Everything behind the plane is hidden from
-  /// then on, if the plane is the nearer one of the two.
+  /// Stores the plane of a triangle that covers all samples of the block, if the plane is nearer than the stored one.
+  /// From then on everything behind the plane is hidden.
   HWY_INLINE void KeepPlane(int block, const Plane& p, const Reach& reach) const {
     BlockBounds& bounds = buffer_.bounds();
     float corner[4], gain = 0;
@@ -220,8 +222,8 @@ class LargeTriangles {
       corner[c] = reach.corner[c][block] - reach.slack[block];
       gain += corner[c] - bounds.corner[c][block];
     }
-    // A block keeps one plane: the one with the nearer sum of corner keys. Either is valid, as each is a bound of its
-    // own.
+    // A block keeps the plane whose corner keys have the greater sum. Each of the two planes is a valid bound by
+    // itself.
     if (bounds.greatest[block] > 0 && gain <= 0) return;
     for (int c = 0; c < 4; ++c) bounds.corner[c][block] = corner[c];
     bounds.greatest[block] = p.k_max;
@@ -243,8 +245,8 @@ class LargeTriangles {
         const VI e =
             hn::Add(hn::Add(hn::Set(d, edges.first[k]), hn::Mul(column, hn::Set(d, kBlockSize * edges.step_x[k]))),
                     hn::Mul(row, hn::Set(d, kBlockSize * edges.step_y[k])));
-        // The block's corners give the greatest and the least value of the edge function. Signs are or-ed, not
-        // compared.
+        // The block's corners give the greatest and the least value of the edge function. Signs are or-ed, which is
+        // cheaper than comparing them.
         outside = hn::Or(outside, hn::Add(e, hn::Set(d, HWY_MAX(right, 0) + HWY_MAX(down, 0))));
         not_inside = hn::Or(not_inside, hn::Add(e, hn::Set(d, HWY_MIN(right, 0) + HWY_MIN(down, 0))));
       }
@@ -254,8 +256,8 @@ class LargeTriangles {
     return cover;
   }
 
-  /// \returns the blocks whose every pixel is covered at this sample. The first sample closes blocks that were drawn to
-  /// lately and turn out to hide the triangle.
+  /// Draws one sample of the open blocks. \returns the blocks whose every pixel is covered at this sample. At the first
+  /// sample, also closes the blocks that were drawn to lately and turn out to hide the triangle.
   template <class Rows>
   [[nodiscard]] std::uint64_t DrawSample(const TriangleRecord& r, const Plane& plane, const PixelRect& rect,
                                          std::size_t sample, std::uint64_t& open, const Reach& reach) {

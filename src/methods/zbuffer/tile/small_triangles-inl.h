@@ -29,13 +29,14 @@ using frontmost::HWY_NAMESPACE::CompactInto;
 using frontmost::HWY_NAMESPACE::Compactor;
 
 // A triangle whose pixel rectangle is at most this wide and high is drawn in a packet. A packet is walked over the
-// widest width and the greatest height of its rectangles, so triangles that are long both ways would multiply the cost.
-// Walls are higher than wide.
+// greatest width and the greatest height of its rectangles, so a wide triangle beside a high one would multiply the
+// cost. The height may be greater, because triangles of walls are higher than wide.
 constexpr int kWalkWidth = kMostWalked.x, kWalkHeight = kMostWalked.y;
 // A triangle of more pixels than this is first tested against the hierarchical depth.
 constexpr std::int32_t kWalkUnseen = 96;
 
-/// Small triangles that wait to be drawn, one array a vertex. The room is one vector more than is drawn at a time.
+/// Small triangles that wait to be drawn, with an array for each coordinate of each vertex. The room is one vector more
+/// than the queue ever holds, because stores write whole vectors.
 struct TriangleQueue {
   static constexpr std::size_t kRoom = 3 * kMaxLanes;
   HWY_ALIGN_MAX std::int32_t x[3][kRoom], y[3][kRoom];
@@ -59,7 +60,7 @@ class SmallTriangles {
     for (const glm::ivec2& s : picture.samples) low_ = glm::min(low_, s), high_ = glm::max(high_, s);
   }
 
-  /// The queue that triangles are appended to: less than a vector of them between calls of DrawFull().
+  /// The queue that triangles are appended to. After DrawFull() it holds less than a vector of triangles.
   [[nodiscard]] HWY_INLINE TriangleQueue& queue() { return queue_; }
   /// Draws packets as long as a vector can be filled.
   HWY_INLINE void DrawFull() {
@@ -100,7 +101,7 @@ class SmallTriangles {
     Shift(drawn);
   }
 
-  /// Drops hidden triangles from the packet; asks only for triangles that take long to walk.
+  /// Drops hidden triangles from the packet. Tests only triangles that take long to walk.
   HWY_INLINE void LeaveOutHidden(SmallPacket& packet) {
     const DI d;
     const MI asked = hn::Gt(hn::Mul(packet.width, packet.height), hn::Set(d, kWalkUnseen));
@@ -160,15 +161,15 @@ class SmallTriangles {
     const MI live = hn::Lt(hn::Iota(d, 0), hn::Set(d, std::int32_t(used)));
     b.px = columns.first;
     b.py = rows.first;
-    // Lanes behind the last triangle hold old values; a width and height of 0 keeps them from being walked.
+    // Lanes after the last triangle hold old values; a width and height of 0 keeps them from being walked.
     b.steep = hn::And(b.steep, live);
     b.width = hn::IfThenElseZero(live, hn::Add(hn::Sub(columns.last, b.px), one));
     b.height = hn::IfThenElseZero(live, hn::Add(hn::Sub(rows.last, b.py), one));
     return b;
   }
 
-  /// Walks the rectangles of all triangles of a packet at once, one pixel position a step, and notes the covered
-  /// (pixel, triangle) pairs as word offset << 13 | y << 8 | x << 4 | lane. \returns how many.
+  /// Walks the rectangles of all triangles of a packet at once, one pixel position a step, and stores the covered
+  /// (pixel, triangle) pairs as word offset << 13 | y << 8 | x << 4 | lane. \returns the number of pairs.
   HWY_INLINE std::size_t Walk(const SmallPacket& b, int most_x, int most_y, std::size_t sample) {
     const DI d;
     const DU du;
@@ -236,7 +237,7 @@ class SmallTriangles {
     }
   }
 
-  /// The corner of a pixel, from the offset of its word.
+  /// The corner of the pixel whose word has this offset.
   [[nodiscard]] static HWY_INLINE glm::ivec2 PlaceOf(std::uint32_t word) {
     return glm::ivec2(int(word % kTileStride), int(word / kTileStride)) * kSubPixels;
   }

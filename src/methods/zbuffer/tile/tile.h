@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tiles of the picture: their places, the picture that they are drawn to, and the memory that drawing one takes.
+// Tiles of the picture, the picture that they are drawn to, and the memory that a thread needs to draw a tile.
 //
 //    picture      tiles of 128 x 128 pixels, row by row, each drawn by one thread
 //    tile         8 x 8 blocks of 16 x 16 pixels, one bit each in masks of 64 bits
@@ -28,7 +28,7 @@ inline constexpr int kBlockSize = 16;              ///< pixels; a tile is 8 x 8 
 inline constexpr int kTileStride = kTileSize + 8;  ///< words; a power of two would collide in the cache
 inline constexpr std::size_t kTileWords = std::size_t(kTileSize) * kTileStride;
 
-/// The greatest pixel rectangle, in x and y, of triangles that are drawn many at a time.
+/// The greatest pixel rectangle, in x and y, of triangles that are drawn in packets.
 inline constexpr glm::ivec2 kMostWalked{16, 32};
 
 /// Pixels [x0, x1] x [y0, y1], both ends included.
@@ -60,11 +60,12 @@ struct Picture {
   std::span<const glm::ivec2> samples;  ///< offsets within a pixel
   PrimitiveId* primitives;              ///< planes, [sample][y][x]
   float* keys;
-  bool streams;                         ///< write planes past the cache: they are too large to stay in it
-  const Cutouts* cutouts;               ///< null where no triangle has holes
+  bool streams;                         ///< true if planes are written past the cache, because they are too large to
+                                        ///< stay in it
+  const Cutouts* cutouts;               ///< null if no triangle has holes
   ScreenRays rays;                      ///< rays of the view, which find the holes
-  const PixelPlanes* pixels = nullptr;  ///< if not null, takes the final result; the planes then hold intermediate
-                                        ///< results
+  const PixelPlanes* pixels = nullptr;  ///< if not null, receives the final result; `primitives` and `keys` then hold
+                                        ///< intermediate results
 };
 
 /// The pixels of one tile.
@@ -105,7 +106,7 @@ struct TileRect {
   [[nodiscard]] bool holds(int column, int row) const { return x0 <= column && column <= x1 && y0 <= row && row <= y1; }
 };
 
-/// Splits a list in which all cutouts stand behind the solid items.
+/// Splits a list of solid items followed by cutouts into these two parts.
 struct PartedList {
   std::span<const std::uint32_t> solid, cutouts;
 
@@ -130,13 +131,13 @@ struct TileLists {
     const std::size_t i = tile - first_tile;
     return std::span(items).subspan(begin[i], begin[i + 1] - begin[i]);
   }
-  /// Makes the lists of the tiles that `visit(item, add)` names by add(tile), items in their order. Items are counted
-  /// by tile first and then filled in.
+  /// Makes the lists. visit(item, add) calls add(tile) for each tile whose list holds the item. Lists keep the order of
+  /// items. Each item is visited twice: items are counted by tile first and then filled in.
   template <class Visit>
   void make(const TileRange& tiles, std::size_t item_count, const Visit& visit) {
     first_tile = tiles.begin;
     const std::size_t tile_count = tiles.end - tiles.begin;
-    // Filling a list advances its beginning, so beginnings are stored one place further on at first.
+    // Filling a list advances its beginning, so beginnings are first stored one entry after their final place.
     begin.assign(tile_count + 2, 0);
     for (std::size_t i = 0; i < item_count; ++i) visit(i, [&](std::size_t tile) { ++begin[tile - tiles.begin + 2]; });
     for (std::size_t tile = 0; tile < tile_count; ++tile) begin[tile + 2] += begin[tile + 1];
@@ -151,30 +152,31 @@ struct BlockBounds {
   static constexpr std::size_t count = 64;
   /// No sample of the block is farther than this key; 0 where some sample sees nothing.
   alignas(64) float farthest[count];
-  /// Keys at the four outermost samples, less what rounding may add, of a triangle that covers all of the block;
-  /// `greatest` is the greatest key of that triangle. No sample of the block is farther than the plane through the four
-  /// keys, or than `greatest`.
+  /// A triangle that covers all of the block: `corner` holds its keys at the four outermost samples, less what rounding
+  /// may add, and `greatest` its greatest key. Every sample of the block is at least as near as the farther of two
+  /// bounds: the plane through the four keys, and `greatest`.
   alignas(64) float corner[4][count];
   alignas(64) float greatest[count];
 };
 
 /// The private memory of one thread, reused from tile to tile.
 struct TileScratch {
-  /// `references` has room for every pixel of the largest walk in every lane, and one vector of slack for whole stores.
+  /// `references` has room for every pixel of the largest walk in every lane, and for one vector more, because stores
+  /// write whole vectors.
   TileScratch() : bounds(1), references(std::size_t(16 * kMostWalked.x * kMostWalked.y) + 64) {}
   /// Makes room for `sample_count` samples a pixel.
   void reserve(std::size_t sample_count) {
     if (words.size() < sample_count * kTileWords) words = Buffer<std::uint64_t>(sample_count * kTileWords);
   }
 
-  /// By sample, kTileWords each: key bits << 32 | ~id, where the greatest word wins and 0 means "nothing".
+  /// kTileWords words for each sample. A word is key bits << 32 | ~id; the greatest word wins, and 0 means "nothing".
   Buffer<std::uint64_t> words;
-  Buffer<BlockBounds> bounds;        ///< one
+  Buffer<BlockBounds> bounds;        ///< a single element
   Buffer<std::uint32_t> references;  ///< covered (triangle, pixel) pairs of one packet
 };
 
-/// Tells whether samples of a tile look through holes. Tiles ask only where a triangle with holes would be seen.
-/// Fragments of the same few triangles follow each other, so the class keeps how the last triangles lie on the screen.
+/// Tells whether samples of a tile look through holes. A sample is tested only if the triangle with holes would be seen
+/// there. The same few triangles are tested again and again, so the class keeps the last triangles' ScreenCutouts.
 class TileHoles {
  public:
   /// Borrows the picture. Precondition: it has cutouts.
@@ -182,7 +184,8 @@ class TileHoles {
       : picture_(picture), first_(glm::ivec2(tile.x, tile.y) * kSubPixels) {
     ids_.fill(no_primitive);
   }
-  /// Whether the triangle has a hole at a place of the tile, in 1/256 pixel. Precondition: the triangle is a cutout.
+  /// Returns whether the triangle has a hole at `place`, in 1/256 pixel of the tile. Precondition: the triangle is a
+  /// cutout.
   [[nodiscard]] bool has(PrimitiveId id, const glm::ivec2& place) {
     const std::size_t slot = id % kSlots;
     if (ids_[slot] != id) {
@@ -196,7 +199,7 @@ class TileHoles {
   static constexpr std::size_t kSlots = 32;
 
   const Picture& picture_;
-  glm::ivec2 first_;  // first place of the tile in the image
+  glm::ivec2 first_;  // top left corner of the tile in the image, in 1/256 pixel
   std::array<PrimitiveId, kSlots> ids_;
   std::array<std::optional<ScreenCutout>, kSlots> cutouts_;
 };

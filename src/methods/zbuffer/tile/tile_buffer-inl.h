@@ -31,10 +31,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 using DW = hn::ScalableTag<std::uint64_t>;
 using DWI = hn::RebindToSigned<DW>;
 
-// Words of pixels of the tile outside the image. They are nearer than anything, so they never keep a block from hiding.
+// The word of pixels of the tile that lie outside the image. It is nearer than any key, so that these pixels never keep
+// a block from hiding triangles.
 constexpr std::uint64_t kOutsideImage = std::uint64_t(0x7F7FFFFF) << 32;
 
-/// The order in which vectors of 32 bits take pixels. Interleaving keys and ids in this order puts words in line.
+/// The order of pixels in vectors of 32-bit lanes. Interleaving keys and ids in this order gives words in the order of
+/// pixels.
 struct PixelOrder {
   HWY_ALIGN_MAX std::int32_t column[kMaxLanes];
   constexpr PixelOrder() : column{} {
@@ -48,7 +50,7 @@ HWY_INLINE VU InPixelOrder(VU in_line) {
   return hn::TableLookupLanes(in_line, hn::SetTableIndices(DU(), kPixelOrder.column));
 }
 
-/// Words of keys and ids, one vector or two.
+/// The words that a vector of keys and a vector of ids make: one vector or two.
 struct Words {
 #if HWY_TARGET == HWY_SCALAR
   static constexpr std::size_t kVectors = 1;
@@ -58,7 +60,7 @@ struct Words {
   hn::Vec<DWI> word[kVectors];
 };
 
-/// Key bits and ids are in kPixelOrder, the resulting words in line.
+/// Makes words in the order of pixels. Key bits and complements of ids are given in kPixelOrder.
 HWY_INLINE Words WordsOf(VU key_bits, VU not_ids) {
   const DWI d;
 #if HWY_TARGET == HWY_SCALAR
@@ -87,7 +89,7 @@ class LeastKey {
   LeastKey() : least_(hn::BitCast(D(), hn::Set(DWI(), std::int64_t(kOutsideImage)))) {}
   HWY_INLINE void Fold(hn::Vec<DWI> words) { least_ = hn::Min(least_, hn::BitCast(D(), words)); }
 
-  /// False if some key is no greater than `key`; in rare cases also if all are greater.
+  /// Returns false if some key is not greater than `key`, and in rare cases also if all keys are greater.
   [[nodiscard]] HWY_INLINE bool IsAbove(float key) const {
     const auto limit =
         hn::BitCast(D(), hn::Set(DWI(), std::int64_t(std::uint64_t(bits_as<std::uint32_t>(key)) << 32 | kLowHalf)));
@@ -146,7 +148,7 @@ HWY_INLINE void FillTile(const Picture& picture, const Tile& tile) {
   hwy::FlushStream();
 }
 
-/// The words of a row's pixels, as many as a vector of 32 bits has lanes.
+/// The words of neighbouring pixels of a row, as many as a vector has 32-bit lanes.
 class RowPart {
  public:
 #if HWY_TARGET == HWY_SCALAR
@@ -168,15 +170,15 @@ class RowPart {
 };
 
 /// The tile's samples as 64-bit words: the key's bits above the complement of the id. The greater word is the nearer
-/// fragment, or at equal keys the one with the lower id; 0 is nothing. Keys are not negative, so words compare alike as
-/// signed numbers, the only comparison that AVX2 has. The buffer also holds the hierarchical depth: the farthest key of
-/// each block, found on demand.
+/// fragment, or at equal keys the fragment with the lower id; 0 means "nothing". Keys are not negative, so words can be
+/// compared as signed numbers, the only comparison that AVX2 has. The buffer also holds the hierarchical depth: the
+/// farthest key of each block, found on demand.
 class TileBuffer {
  public:
   TileBuffer(const Picture& picture, const Tile& tile, TileScratch& scratch)
       : picture_(picture), tile_(tile), words_(scratch.words.data()), bounds_(scratch.bounds[0]) {}
 
-  /// The blocks that a rectangle of pixels touches. Precondition: not empty, within the tile.
+  /// The blocks that a rectangle of pixels touches. Precondition: the rectangle is not empty, and within the tile.
   [[nodiscard]] static HWY_INLINE std::uint64_t BlocksOf(const PixelRect& rect) {
     constexpr std::uint64_t kFirstColumn = 0x0101010101010101u;
     const int x0 = rect.x0 / kBlockSize, x1 = rect.x1 / kBlockSize;
@@ -207,8 +209,8 @@ class TileBuffer {
       }
     std::fill(std::begin(bounds_.farthest), std::end(bounds_.farthest), 0.0f);
     std::fill(std::begin(bounds_.greatest), std::end(bounds_.greatest), 0.0f);  // no plane
-    // An empty block of a whole tile hides nothing, as its 0 says. At the image's rim, pixels outside may make up a
-    // whole block, which hides everything.
+    // In a whole tile, empty blocks hide nothing, so the farthest keys of 0 are right. At the image's rim, a block that
+    // lies outside the image hides everything, so blocks are marked as drawn to.
     const bool whole = tile_.width == kTileSize && tile_.height == kTileSize;
     dirty_ = whole ? 0 : ~std::uint64_t(0);
   }
@@ -221,7 +223,7 @@ class TileBuffer {
     dirty_ = 0;
   }
 
-  /// The farthest key of every block; 0 for a block with a sample that is not covered.
+  /// Stores the farthest key of every block, or 0 if a sample of the block is not covered.
   void FindFarthest(float* farthest) {
     Refresh();
     std::copy_n(bounds_.farthest, BlockBounds::count, farthest);
@@ -262,7 +264,8 @@ class TileBuffer {
     }
   }
 
-  /// The triangles that blocks hide for certain, given their pixels and greatest keys. Tests two by two blocks at most.
+  /// Returns the triangles that blocks certainly hide, given the triangles' pixels and greatest keys. Triangles that
+  /// span more than two by two blocks are not tested.
   [[nodiscard]] HWY_INLINE MI Hidden(const PixelRange& columns, const PixelRange& rows, VF nearest) const {
     static_assert(kBlockSize == 1 << 4 && kTileSize / kBlockSize == 8);
     const DI d;
@@ -277,7 +280,7 @@ class TileBuffer {
   /// True if every sample of the blocks is strictly nearer than `nearest`.
   [[nodiscard]] HWY_INLINE bool AllHide(std::uint64_t blocks, float nearest) {
     std::uint64_t left = blocks & ~KnownToHide(nearest);
-    // A block that was not drawn to since its farthest key was found gives the same answer again.
+    // A block that was not drawn to since its farthest key was found still does not hide.
     if (left & ~dirty_) return false;
     for (; left != 0; left &= left - 1)
       if (!Hides(int(hwy::Num0BitsBelowLS1Bit_Nonzero64(left)), nearest)) return false;
@@ -293,7 +296,7 @@ class TileBuffer {
     if (word > kept && !holes_->has(~std::uint32_t(word), place)) kept = word;
   }
 
-  /// KeepSolid() for a row of pixels; folds the kept words into `least`. `place` belongs to the first sample.
+  /// Does KeepSolid() for a row of pixels, and folds the kept words into `least`. `place` is that of the first sample.
   HWY_INLINE void KeepSolidRow(const Words& words, std::uint64_t* row, const glm::ivec2& place, LeastKey& least) const {
     const DWI d;
     HWY_ALIGN_MAX std::uint64_t word[kMaxLanes];
@@ -321,7 +324,8 @@ class TileBuffer {
     return hn::BitCast(DF(), LookUp64(reinterpret_cast<const std::int32_t*>(bounds_.farthest), block));
   }
 
-  /// Reads samples of a block until one does not hide. Stores the farthest key if all samples hide.
+  /// Returns whether every sample of the block is nearer than `nearest`. Stops reading when a sample is not; otherwise
+  /// stores the farthest key.
   [[nodiscard]] bool FindHiding(int block, float nearest) {
     constexpr int kRowsAtOnce = 4;
     const DWI d;

@@ -109,7 +109,7 @@ class TilePainter {
       const std::uint64_t blocks = buffer_.BlocksInTile(frame_.culled.rect(cluster));
       if (buffer_.AllHide(blocks, frame_.culled.nearest[cluster])) continue;
       DrawCluster(frame_.set.clusters[cluster]);
-      // Queued triangles stay within the cluster's blocks, so these marks stay valid until they are drawn.
+      // Triangles that wait in the queue lie within the cluster's blocks, so these marks hold for them, too.
       buffer_.MarkDrawn(blocks);
     }
     small_.Finish();

@@ -13,15 +13,15 @@ namespace {
 
 constexpr int kBytes = 4;  ///< per pixel: R, G, B, A
 
-/// One channel of a pixel, composited over the background.
+/// Returns one channel of a pixel that is composited over the background.
 float over(const glm::vec4& pixel, const glm::vec4& background, int k) {
   return pixel[k] + background[k] * (1.0f - pixel.a);
 }
 
 float srgb_of(float linear) { return float(srgb_of_linear(double(linear > 0 ? (linear < 1 ? linear : 1.0f) : 0.0f))); }
 
-/// Colours are not premultiplied while they are converted, because the curve is not linear. So a pixel is first divided
-/// by its alpha and multiplied afterwards; a clear pixel stays clear.
+/// Returns the linear form of a premultiplied sRGB pixel. The sRGB curve is not linear, so the pixel is divided by its
+/// alpha before it is converted, and multiplied by it afterwards. A clear pixel stays clear.
 glm::vec4 linear_of_premultiplied(const glm::vec4& color) {
   if (!(color.a > 0)) return glm::vec4(0);
   return {linear_of_shown(glm::vec3(color) / color.a) * color.a, color.a};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Canvases, on which finished tiles are painted: planes of linear floats, bytes for screens without intermediate
-// planes, and canvases that change tiles and pass them on to another one.
+// Finished tiles are painted on canvases. One holds planes of linear floats, and one holds bytes for screens. Others
+// change the tiles and pass them on to another canvas.
 //
-// Blending in sRGB values is like that of viewers of vector figures. Colours are converted to sRGB before they are
-// composited, and back when a pixel is done, so the steps in between are unchanged.
+// Viewers of vector figures blend sRGB values. To do the same, colours are converted to sRGB before they are
+// composited, and back when a pixel is done. The steps in between need no change.
 //
 //   colorist --linear--> srgb_colorist --sRGB--> samples, layers, background --sRGB--> LinearCanvas --linear--> canvas
 #pragma once
@@ -20,15 +20,15 @@
 
 namespace frontmost::shading {
 
-/// Threads may paint different tiles at once.
+/// A surface for finished tiles. Threads may paint different tiles at once.
 class TileCanvas {
  public:
   virtual ~TileCanvas() = default;
   /// Composites the `pixels` of the tile, row by row and premultiplied, over the background.
   virtual void write(const TileRectangle& tile, const std::vector<glm::vec4>& pixels, const glm::vec4& background) = 0;
   virtual void fill(const TileRectangle& tile, const glm::vec4& value) = 0;
-  /// Writes pixels with an alpha for each channel, which tint what is behind them. A background that is not opaque is
-  /// not tinted, because a picture has a single alpha.
+  /// Writes pixels that have an alpha for each channel, and so tint what is behind them. A background that is not
+  /// opaque is not tinted, because a picture has a single alpha.
   virtual void write_tinted(const TileRectangle& tile, const abuffer_detail::PaintedPixels& pixels,
                             const glm::vec4& background);
 };
@@ -42,7 +42,7 @@ struct Painting {
   ShadingRate rate = ShadingRate::each_pixel;
 };
 
-/// An image of up to four channels with the given names.
+/// A canvas that is an image of up to four channels with the given names.
 class PlanesCanvas final : public TileCanvas {
  public:
   /// Reuses the image `memory` if it has the right size.
@@ -52,7 +52,7 @@ class PlanesCanvas final : public TileCanvas {
   [[nodiscard]] Image take() { return std::move(image_); }
 
  private:
-  /// The index in a plane at which row y of the tile begins.
+  /// Returns the index in a plane of the first value of row y of the tile.
   [[nodiscard]] std::size_t row(const TileRectangle& tile, int y) const;
   Image image_;
 };
@@ -70,8 +70,8 @@ class BitmapCanvas final : public TileCanvas {
   Isa isa_;
 };
 
-/// Composites every tile over the environment and passes the tile to another canvas, which it borrows. The environment
-/// gets the same exposure and tone mapping as surfaces.
+/// Composites every tile over the environment, and passes the tile to another canvas, which is borrowed. The
+/// environment gets the exposure and tone mapping of the surfaces.
 class EnvironmentCanvas final : public TileCanvas {
  public:
   EnvironmentCanvas(TileCanvas& canvas, const View& view, const Lighting& lighting, Isa isa)
@@ -88,10 +88,10 @@ class EnvironmentCanvas final : public TileCanvas {
     std::vector<glm::vec4> pixels;
   };
 
-  /// Paints over(i, environment behind pixel i) for each pixel i of the tile.
+  /// Passes on the tile, with over(i, environment behind pixel i) for each pixel i.
   template <class Over>
   void paint(const TileRectangle& tile, const glm::vec4& background, const Over& over);
-  /// The radiance seen at the middle of a pixel.
+  /// Returns the radiance of the environment behind the middle of a pixel.
   [[nodiscard]] glm::vec3 radiance(int x, int y) const;
 
   TileCanvas& canvas_;
@@ -101,8 +101,8 @@ class EnvironmentCanvas final : public TileCanvas {
   Pool<Work> works_;
 };
 
-/// Takes premultiplied sRGB pixels over a background in sRGB, and paints them in linear light on another canvas, which
-/// it borrows.
+/// Receives premultiplied sRGB pixels over an sRGB background. Paints them in linear light on another canvas, which is
+/// borrowed.
 class LinearCanvas final : public TileCanvas {
  public:
   explicit LinearCanvas(TileCanvas& canvas) : canvas_(canvas) {}
@@ -113,12 +113,12 @@ class LinearCanvas final : public TileCanvas {
   TileCanvas& canvas_;
 };
 
-/// Stores one premultiplied pixel as four bytes R, G, B, A: sRGB, not premultiplied.
+/// Stores one premultiplied linear pixel as four bytes R, G, B, A, which are sRGB and not premultiplied.
 void store_rgba8(const glm::vec4& color, std::uint8_t* out);
 /// Stores `count` pixels like store_rgba8(), composited over a background.
 void store_row(const glm::vec4* pixels, int count, const glm::vec4& background, std::uint8_t* out, Isa isa);
 
-/// Colours like another colorist, which it borrows, but in sRGB.
+/// Returns a colorist that converts the colours of `linear` to sRGB. Borrows `linear`.
 [[nodiscard]] FragmentShader::Colorist srgb_colorist(const FragmentShader::Colorist& linear);
 
 }  // namespace frontmost::shading

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finished pixels become bytes, a whole vector at a time: composited over the background, then converted to sRGB by the
-// table of base/srgb.h, one entry per lane. A pixel with an alpha between 0 and 1 must be divided by it. Vectors with
-// such pixels, at edges over no background, are stored pixel by pixel.
+// Converts finished pixels to bytes, a whole vector at a time. The pixels are composited over the background, and the
+// table of base/srgb.h converts them to sRGB, one entry per lane. A pixel with an alpha between 0 and 1 must be divided
+// by its alpha. Such pixels occur at edges if there is no background; a vector that contains one is stored pixel by
+// pixel.
 
 #include "shade/canvas/canvas.h"
 
@@ -23,11 +24,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace frontmost::HWY_NAMESPACE;
 namespace {
 
-/// Vector form of srgb8_of_linear(), with the same results.
+/// Returns what srgb8_of_linear() returns, for a vector of values.
 HWY_INLINE VU SrgbOf(VF linear) {
   const DU du;
   const VF least = All(detail::least_srgb8), one = All(1.0f);
-  const VF above = hn::IfThenElse(hn::Gt(linear, least), linear, least);  // the least for NaN
+  const VF above = hn::IfThenElse(hn::Gt(linear, least), linear, least);  // NaN becomes the least
   const VU bits = hn::BitCast(du, hn::IfThenElse(hn::Lt(above, one), above, one));
   const VI bucket = hn::BitCast(DI(), hn::ShiftRight<16>(hn::Sub(bits, hn::Set(du, detail::least_srgb8_bits))));
   const VU entry = hn::GatherIndex(du, detail::srgb8_buckets.data(), bucket);

@@ -20,7 +20,7 @@ using shading::PrefilteredEnvironment;
 
 constexpr int kMostWidth = 16384;
 
-/// \throws Error as documented for the constructor.
+/// Checks the picture of an environment. \throws Error as documented for the constructor of Environment.
 void check_picture(const Image& picture) {
   validate(picture);
   const auto fail = [](ErrorCode code, const std::string& reason) { throw Error(code, "environment", reason); };
@@ -38,17 +38,17 @@ void check_picture(const Image& picture) {
   }
 }
 
-/// A smooth step from 0 to 1 as t goes from 0 to 1, with slope 0 at both ends.
+/// Returns a smooth step from 0 to 1 as t goes from 0 to 1, with slope 0 at both ends.
 float eased(float t) {
   const float inside = std::clamp(t, 0.0f, 1.0f);
   return inside * inside * (3 - 2 * inside);
 }
 
-/// A lamp behind a rectangle of cloth, as photographers use around a product.
+/// A rectangular lamp behind cloth, as photographers place them around a product.
 class SoftBox {
  public:
-  /// `middle`: direction of its middle; `extent`: half width and height as tangents; `softness`: width of its fading
-  /// rim.
+  /// `middle` is the direction to the middle of the box, `extent` its half width and half height as tangents, and
+  /// `softness` the width of its fading rim, also as a tangent.
   SoftBox(const glm::vec3& middle, const glm::vec2& extent, float softness, float radiance)
       : ahead_(glm::normalize(middle)),
         right_(glm::normalize(std::abs(ahead_.y) > 0.9f ? glm::vec3(1, 0, 0) : glm::vec3(ahead_.z, 0, -ahead_.x))),
@@ -57,7 +57,7 @@ class SoftBox {
         softness_(softness),
         radiance_(radiance) {}
 
-  /// The radiance towards a direction, with the box in front of `light`.
+  /// Returns the radiance from a direction, where `light` is the radiance behind the box.
   [[nodiscard]] float before(float light, const glm::vec3& towards) const {
     const float distance = glm::dot(towards, ahead_);
     if (distance <= 0) return light;
@@ -73,8 +73,8 @@ class SoftBox {
 };
 
 glm::vec3 studio_radiance(const glm::vec3& towards) {
-  // In order: beside the key light; one at each side, for the outlines of bottles and pipes; overhead; and a large dim
-  // one behind the camera, for surfaces that face it.
+  // The first box is beside the key light. Two boxes, one at each side, outline bottles and pipes. The fourth is
+  // overhead. The last, large and dim, is behind the camera, for surfaces that face it.
   static const SoftBox boxes[] = {{{-0.48f, 0.68f, 0.72f}, {0.40f, 0.40f}, 0.14f, 1.25f},
                                   {{0.95f, 0.12f, 0.30f}, {0.20f, 0.85f}, 0.09f, 1.1f},
                                   {{-0.92f, 0.10f, -0.38f}, {0.16f, 0.85f}, 0.09f, 1.1f},
@@ -93,7 +93,7 @@ glm::vec3 sky_radiance(const glm::vec3& towards) {
   return sky + (ground - sky) * below;
 }
 
-/// `radiance(towards)` is the radiance from a direction of unit length.
+/// Makes an environment from radiance(towards), the radiance from a direction of unit length.
 template <class Radiance>
 std::shared_ptr<const PrefilteredEnvironment> made_by_code(const Radiance& radiance, bool turns,
                                                            const Execution& execution) {
@@ -148,7 +148,7 @@ glm::vec3 Environment::radiance(const glm::vec3& towards, float roughness) const
   constexpr int last = PrefilteredEnvironment::level_count - 1;
   const float level = (roughness > 0 ? std::min(roughness, 1.0f) : 0.0f) * float(last);  // 0 for NaN
   const int first = std::min(int(level), last - 1);
-  const glm::vec3 ahead(unit(glm::dvec3(towards)));  // sums of floats could overflow
+  const glm::vec3 ahead(unit(glm::dvec3(towards)));  // squares of large floats could overflow
   const glm::vec3 finer = made_->levels[std::size_t(first)].color(ahead);
   return finer + (made_->levels[std::size_t(first) + 1].color(ahead) - finer) * (level - float(first));
 }

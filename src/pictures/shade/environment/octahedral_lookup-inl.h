@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Look-ups in octahedral maps for many directions. Addresses are computed in plain loops over lanes; reads bring the
-// four channels of two neighbouring texels at a time.
+// Look-ups in octahedral maps for many directions. Addresses are computed in plain loops over lanes. One read brings
+// the four channels of two neighbouring texels.
 
 // This file is included once for every target.
 #if defined(FRONTMOST_SHADE_ENVIRONMENT_OCTAHEDRAL_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -21,7 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace frontmost::shading::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A place on the unfolded octahedron, 0 to 1; both 0 for NaN.
+/// A place on the unfolded octahedron. Both coordinates are 0 to 1, and 0 for NaN.
 struct OctahedralPlace {
   float u, v;
 };
@@ -36,8 +36,8 @@ inline OctahedralPlace octahedral_place(const Direction& d) {
   return {clamp01(0.5f + 0.5f * u), clamp01(0.5f + 0.5f * v)};
 }
 
-/// The first of the four texels around a place, as an offset in floats from the beginning of a map with border, and the
-/// place's distance from that texel.
+/// The square of four texels around a place. `first` is the offset of its first texel in floats, from the beginning of
+/// a map with border. (x, y) is the position of the place in the square, 0 to 1.
 struct TexelSquare {
   std::int32_t first;
   float x, y;
@@ -49,7 +49,7 @@ inline TexelSquare texel_square(const OctahedralPlace& place, std::int32_t size)
   return {4 * (row * (size + 2) + column), x - float(column), y - float(row)};
 }
 
-/// Texel squares by fragment, or by texel of another map.
+/// Texel squares, indexed by fragment or by texel of another map.
 template <int capacity>
 struct TexelSquares {
   std::int32_t first[capacity];
@@ -70,7 +70,7 @@ using VTexels = hn::Vec<DTexels>;
 constexpr int kTexelLanes = int(hn::MaxLanes(DTexels())), kTexelParts = kPairLanes / kTexelLanes;
 constexpr float kSecondTexel[kPairLanes] = {0, 0, 0, 0, 1, 1, 1, 1};
 
-/// Adds `weight` times the bilinear mean of a square of texels; the sums of the two columns stay separate.
+/// Adds `weight` times the bilinear interpolation in a square of texels. The sums of the two columns stay separate.
 HWY_INLINE void AddSquare(const float* texels, std::int32_t floats_per_row, const TexelSquare& square, float weight,
                           VTexels* sums) {
   const DTexels d;
@@ -87,7 +87,7 @@ HWY_INLINE void AddSquare(const float* texels, std::int32_t floats_per_row, cons
   }
 }
 
-/// Stores the sum of both columns: four channels.
+/// Adds the sums of the two columns, and stores the four channels.
 HWY_INLINE void StoreSum(const VTexels* sums, float* out) {
   const DTexels d;
 #if HWY_TARGET != HWY_SCALAR  // the scalar target has no halves

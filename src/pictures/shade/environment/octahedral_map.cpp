@@ -13,15 +13,15 @@ float signed_as(float value, float sign) { return sign < 0 ? -value : value; }
 
 constexpr float kHalfTurn = 3.14159265f;
 
-/// The arc tangent of numbers from 0 to 1, to about 2e-6. C libraries are not used, as they differ in the last bit. (C.
-/// Hastings. Approximations for Digital Computers. 1955.)
+/// Returns the arc tangent of a number from 0 to 1, to about 2e-6. Functions of C libraries would differ in the last
+/// bit. (C. Hastings. Approximations for Digital Computers. 1955.)
 float arc_tangent(float t) {
   const float t2 = t * t;
   const float high = 0.05265332f - 0.01172120f * t2;
   return t * (0.99997726f + t2 * (-0.33262347f + t2 * (0.19354346f + t2 * (-0.11643287f + t2 * high))));
 }
 
-/// The angle of (x, y) from the x axis towards the y axis, -pi to pi; 0 for (0, 0).
+/// Returns the angle of (x, y) from the x axis towards the y axis, -pi to pi, or 0 for (0, 0).
 float angle_of(float x, float y) {
   const float ax = std::abs(x), ay = std::abs(y), longer = std::max(ax, ay);
   if (!(longer > 0)) return 0;
@@ -31,7 +31,7 @@ float angle_of(float x, float y) {
   return y < 0 ? -half : half;
 }
 
-/// The three planes of a picture.
+/// The colour planes of a picture.
 struct Planes {
   explicit Planes(const Image& picture)
       : r(picture.find("R")->floats().data()),
@@ -41,16 +41,16 @@ struct Planes {
   const float *r, *g, *b;
 };
 
-/// The place of a direction, 0 to 1 from left to right and from top to bottom; `towards` has any length but zero. The
-/// error is at most 1/50000 of a turn, and the bits are the same on every machine.
+/// Returns where a direction is in an equirectangular picture, 0 to 1 from left to right and from top to bottom.
+/// `towards` has any length but zero. The error is at most 1/50000 of a turn. The bits are the same on every machine.
 glm::vec2 equirectangular_place(const glm::vec3& towards) {
   const float azimuth = angle_of(-towards.z, towards.x);
   const float elevation = angle_of(std::sqrt(towards.x * towards.x + towards.z * towards.z), towards.y);
   return {0.5f + azimuth * (0.5f / kHalfTurn), 0.5f - elevation * (1 / kHalfTurn)};
 }
 
-/// The colour of an equirectangular picture, by bilinear interpolation; `color_at` gives the colour of a pixel. Columns
-/// wrap around.
+/// Returns the colour of an equirectangular picture in a direction, by bilinear interpolation of color_at(x, y).
+/// Columns wrap around.
 template <class ColorAt>
 glm::vec3 interpolated(const glm::vec3& towards, int width, int height, const ColorAt& color_at) {
   const glm::vec2 at = equirectangular_place(towards) * glm::vec2(float(width), float(height)) - 0.5f;
@@ -72,7 +72,8 @@ class EquirectangularMap {
       : width_(std::min(picture.width, most_width)), height_(std::min(picture.height, most_width / 2)) {
     texels_ = Buffer<glm::vec3>(std::size_t(width_) * std::size_t(height_));
     const Planes planes(picture);
-    // Blocks hold whole pixels: if the width is no multiple, some are a pixel wider than others.
+    // Each texel is the mean of a block of whole pixels. If the width is not a multiple of the texels, some blocks are
+    // a pixel wider.
     const auto begin_of = [](int i, int blocks, int pixels) { return std::size_t(std::int64_t(i) * pixels / blocks); };
     constexpr std::size_t rows_at_once = 8;
     parallel_for(execution, std::size_t(height_), rows_at_once, [&](std::size_t first_row, std::size_t last_row) {
@@ -110,7 +111,7 @@ glm::vec3 octahedron_point(float u, float v) {
 }
 
 float solid_angle(const glm::vec3& octahedron_point) {
-  // All faces are equally far from the centre and at one angle to the square, so only 1 / length^3 varies.
+  // All faces have the same distance from the centre and the same angle to the square, so only 1 / length^3 varies.
   const float squared = glm::dot(octahedron_point, octahedron_point);
   return 1.0f / (squared * std::sqrt(squared));
 }
@@ -120,7 +121,7 @@ glm::vec3 OctahedralMap::color(const glm::vec3& towards) const {
   glm::vec2 at(towards.x * scale, towards.z * scale);
   if (towards.y < 0) at = {signed_as(1 - std::abs(at.y), towards.x), signed_as(1 - std::abs(at.x), towards.z)};
   const glm::vec2 place = (at * 0.5f + 0.5f) * float(size_) - 0.5f;
-  // NaN gives the first texel.
+  // NaN is looked up in the first texel.
   const glm::vec2 first = glm::min(glm::max(glm::vec2(-1), glm::floor(place)), glm::vec2(float(size_ - 1)));
   const glm::vec2 part = place - first;
   const int x = int(first.x), y = int(first.y);
@@ -167,7 +168,7 @@ glm::vec3 equirectangular_color(const Image& picture, const glm::vec3& towards) 
 }
 
 OctahedralMap draw_map(const Image& equirectangular, const Execution& execution) {
-  constexpr int most_width = 2048, least_size = 64, per_side = 3;  // sampled places per texel side, closer than pixels
+  constexpr int most_width = 2048, least_size = 64, per_side = 3;  // samples along a texel side, closer than pixels
   const EquirectangularMap source(equirectangular, most_width, execution);
   int size = least_size;
   while (size < source.width() / 4) size *= 2;

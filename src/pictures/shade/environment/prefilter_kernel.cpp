@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Computes blurred maps and moments from the map of an environment. Specular light is split into two factors: arriving
-// light, weighted by the lobe at normal incidence, and the surface's reflection of light that is 1 everywhere. (B.
-// Karis. Real Shading in Unreal Engine 4. SIGGRAPH 2013 course.)
+// Computes blurred maps and moments from the map of an environment. Specular light is the product of two factors: the
+// arriving light, weighted by the lobe at normal incidence, and the share that the surface reflects of light that is 1
+// everywhere. (B. Karis. Real Shading in Unreal Engine 4. SIGGRAPH 2013 course.)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "shade/environment/prefilter_kernel.cpp"
 #include <algorithm>
@@ -29,13 +29,13 @@ struct DirectionLanes {
   float x[kTexelsAtOnce], y[kTexelsAtOnce], z[kTexelsAtOnce];
 };
 
-/// The normals of consecutive texels of a row, and two directions across each.
+/// The normals of consecutive texels of a row, and two directions perpendicular to each normal.
 struct Frames {
   DirectionLanes normal, across, along;
   int count;
 };
 
-/// Computes both directions from the normal.
+/// Computes the two directions that are perpendicular to each normal.
 void FindFrames(Frames& frames) {
   for (int i = 0; i < frames.count; ++i) {
     const Direction n{frames.normal.x[i], frames.normal.y[i], frames.normal.z[i]};
@@ -110,15 +110,16 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// Maps that are each half as wide as the one before, down to 4 texels.
+/// Returns the map and its reductions, each half as wide as the one before, down to 4 texels.
 std::vector<OctahedralMap> halves_of(const OctahedralMap& map) {
   std::vector<OctahedralMap> maps{map};
   while (maps.back().size() > 4) maps.push_back(maps.back().half());
   return maps;
 }
 
-/// How a level is made: the most texels per side, the least ratio of level 0's side to it, and the directions of the
-/// lobe. Texels are narrower than a quarter of the level's blur, and wide lobes need more directions.
+/// How a level is made. `most_texels` limits its texels per side, `least_ratio` is the least ratio of level 0's side
+/// length to that of the level, and `directions` is the number of directions of the lobe. Texels are narrower than a
+/// quarter of the level's blur. Wide lobes need more directions.
 struct LevelPlan {
   int most_texels, least_ratio, directions;
 };
@@ -158,15 +159,15 @@ IrradianceMoments moments_of(const OctahedralMap& map) {
   return moments;
 }
 
-/// Up to `count` directions of the GGX lobe of this roughness (above 0), weighted by the cosine, for look-ups in these
-/// maps. Each map is half as wide as the one before.
+/// Returns up to `count` directions of the GGX lobe of a roughness above 0, weighted by the cosine. They are meant for
+/// look-ups in `maps`, each of which is half as wide as the one before.
 std::vector<LobeDirection> lobe_directions(double roughness, int count, std::span<const OctahedralMap> maps) {
   const double alpha2 = roughness * roughness * roughness * roughness;
-  const double size = maps.front().size(), texel = 4 * kPi / (size * size);  // solid angle, in the finest map
+  const double size = maps.front().size(), texel = 4 * kPi / (size * size);  // solid angle of a texel of the finest map
   std::vector<LobeDirection> lobe;
   double weights = 0;
   for (int i = 0; i < count; ++i) {
-    const double u = (i + 0.5) / count, half2 = (1 - u) / (1 + (alpha2 - 1) * u);  // cosine squared of N.H
+    const double u = (i + 0.5) / count, half2 = (1 - u) / (1 + (alpha2 - 1) * u);  // half2: squared cosine N.H
     const double cosine = 2 * half2 - 1;
     if (cosine <= 0) continue;
     const double sine = std::sqrt(1 - cosine * cosine), t = half2 * (alpha2 - 1) + 1;
@@ -182,7 +183,8 @@ std::vector<LobeDirection> lobe_directions(double roughness, int count, std::spa
   return lobe;
 }
 
-/// Fills row y of `out`: each texel gets the light of `maps`, weighted by the lobe around the texel's direction.
+/// Fills row y of `out`. Each texel becomes the light in `maps`, weighted by the lobe around the direction of the
+/// texel.
 void blur_row(std::span<const OctahedralMap> maps, std::span<const LobeDirection> lobe, int y, OctahedralMap& out,
               Isa isa) {
   constexpr int texels_at_once = 64;

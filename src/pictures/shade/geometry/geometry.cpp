@@ -10,14 +10,14 @@
 namespace frontmost::shading {
 namespace {
 
-/// Has no branches, so that the compiler can vectorize it.
+/// Whether all ids are `id`. The loop has no branches, so that the compiler can vectorize it.
 bool all_equal(const PrimitiveId* ids, std::size_t count, PrimitiveId id) {
   PrimitiveId different = 0;
   for (std::size_t i = 0; i < count; ++i) different |= ids[i] ^ id;
   return different == 0;
 }
 
-/// \returns false if a value is not finite.
+/// Stores the affine weights of a triangle. \returns false if a value is not finite.
 bool store(const RayVolumes& v, double scale, std::array<Affine, 3>& weight) {
   bool finite = true;
   for (int k = 0; k < 3; ++k) {
@@ -35,8 +35,8 @@ glm::vec3 unit_or(const glm::dvec3& v, const glm::dvec3& fallback) {
 
 float dot3(const glm::vec3& a, const glm::vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// The unit vector; zero if there is none. Very long and short vectors are scaled first, so that their squares stay
-/// finite.
+/// Returns the unit vector in the direction of `v`, or zero if `v` has no direction. Very long and short vectors are
+/// scaled first, so that their squares stay finite.
 glm::vec3 unit_or_zero(const glm::vec3& v) {
   const float length2 = dot3(v, v);
   if (length2 > 1e-20f && length2 < 1e20f) return v * (1.0f / std::sqrt(length2));
@@ -47,7 +47,7 @@ glm::vec3 unit_or_zero(const glm::vec3& v) {
   return length > 0 ? scaled / length : glm::vec3(0);  // false for NaN
 }
 
-/// A reflectance is from 0 to 1; NaN counts as 0.
+/// Limits a colour to reflectances, which are from 0 to 1. NaN becomes 0.
 glm::vec4 reflected_part(const glm::vec4& color) {
   const auto part = [](float value) { return value > 0 ? std::min(value, 1.0f) : 0.0f; };
   return {part(color.r), part(color.g), part(color.b), color.a};

@@ -71,24 +71,25 @@ class BitSet {
   std::vector<std::atomic<std::uint64_t>> words_;
 };
 
-/// The set of the given ids. Reuses `memory` for the result if its size fits. O(ids), in parallel.
+/// Returns the set of the given ids. Reuses `memory` for the result if its size fits. O(ids), in parallel.
 [[nodiscard]] BitSet seen_primitives(std::size_t primitive_count, std::span<const PrimitiveId> ids,
                                      const Execution& execution, BitSet memory = {});
 
-/// The set of primitives that cover three pixels in a row or around a corner, by the `ids` in rows of `width` pixels.
-/// On smaller ones a smooth normal hardly differs visibly from a flat one, so scans of millions of triangles are spared
-/// smoothing. Reuses `memory` for the result if its size fits. O(pixels + primitives / 64), in parallel.
+/// Returns the set of primitives that cover three pixels in a row or around a corner. `ids` are those of the pixels, in
+/// rows of `width`. On smaller primitives a smooth normal hardly looks different from a flat one, so scans of millions
+/// of triangles need no smoothing. Reuses `memory` for the result if its size fits. O(pixels + primitives / 64), in
+/// parallel.
 [[nodiscard]] BitSet large_primitives(std::size_t primitive_count, std::span<const PrimitiveId> ids, int width,
                                       const Execution& execution, BitSet memory = {});
-/// large_primitives() by the first samples.
+/// Returns large_primitives() of the first samples.
 [[nodiscard]] inline BitSet large_primitives(std::size_t primitive_count, const Visible& visible,
                                              const Execution& execution, BitSet memory = {}) {
   return large_primitives(primitive_count, {visible.primitives.data(), visible.view.pixel_count()}, visible.view.width,
                           execution, std::move(memory));
 }
 
-/// For every material of the scene, whether a seen triangle that is not in `known` has it. O(primitives / 64 + new
-/// triangles).
+/// Returns, for every material of the scene, whether a triangle that is in `seen` but not in `known` has it.
+/// O(primitives / 64 + new triangles).
 [[nodiscard]] std::vector<bool> seen_materials(const Surfaces& surfaces, const BitSet& seen, const BitSet& known);
 
 /// A value that is affine in the screen position, relative to a reference point.
@@ -97,14 +98,14 @@ struct Affine {
 };
 
 struct TriangleSetup {
-  std::array<Affine, 3> weight;     ///< their sum at the reference is 1
-  glm::vec2 reference{0};           ///< screen
-  std::array<glm::vec3, 3> corner;  ///< world axes, from the eye
+  std::array<Affine, 3> weight;     ///< barycentric weights; their sum at the reference is 1
+  glm::vec2 reference{0};           ///< a screen position on the triangle
+  std::array<glm::vec3, 3> corner;  ///< world axes, relative to the eye
   std::array<glm::vec3, 3> corner_world;
-  std::array<glm::vec3, 3> normal;  ///< world, unit, on the viewer's side
+  std::array<glm::vec3, 3> normal;  ///< at the corners: world axes, unit, on the viewer's side
   glm::vec3 plane_normal{0};        ///< unit, towards the viewer
   bool is_smooth = false;           ///< the corner normals differ from the plane's
-  bool is_backside = false;         ///< the visible side is the back by the winding
+  bool is_backside = false;         ///< by its winding, the triangle shows its back
   PrimitiveId id = no_primitive;
   std::uint32_t instance = no_index, mesh = no_index, triangle = no_index;
   std::uint32_t material = no_index;  ///< number in the scene
@@ -113,19 +114,19 @@ struct TriangleSetup {
   std::array<bool, max_texcoord_sets> has_texcoord{};                ///< by set
   std::array<std::array<glm::vec2, 3>, max_texcoord_sets> texcoord;  ///< zero in the first set if it is missing
 
-  /// The texture coordinates of corner k; zero if the mesh has no such set.
+  /// Returns the texture coordinates of corner k, or zero if the mesh has no such set.
   [[nodiscard]] glm::vec2 texcoord_at(std::uint32_t set, std::size_t k) const {
     return has_texcoord[set] ? texcoord[set][k] : glm::vec2(0);
   }
 };
 
-/// Fills weights, reference, corners, plane normal, and is_backside (for a triangle that was not mirrored).
-/// Triangles that are seen edge-on, and non-finite results, get equal weights everywhere.
+/// Fills weights, reference, corners, plane normal, and is_backside (for a triangle that was not mirrored). If the
+/// triangle is seen edge-on or a result is not finite, the weights are equal everywhere.
 void set_up_plane(TriangleSetup& setup, const ScreenRays& rays, const std::array<glm::vec3, 3>& corners_world,
                   const glm::vec2& reference);
 
-/// Weights at a screen position: none is negative and they sum to 1, so interpolation stays within the triangle.
-/// `divisor` is their sum before normalization, which gradients need.
+/// The weights of the corners at a screen position. None is negative and they sum to 1, so interpolation stays within
+/// the triangle. `divisor` is their sum before normalization, which gradients need.
 struct Barycentric {
   glm::vec3 weight;
   float divisor;
@@ -145,23 +146,23 @@ struct Barycentric {
   return {{w.x * scale + rest, w.y * scale + rest, w.z * scale + rest}, valid ? sum : 1.0f};
 }
 
-/// A direction in 4 bytes, to about 0.003 degrees: octahedral mapping to a square.
+/// A direction in 4 bytes, by the octahedral mapping to a square. The error is about 0.003 degrees.
 struct PackedNormal {
   std::int16_t x = 0, y = 0;
 };
 [[nodiscard]] PackedNormal pack(const glm::vec3& direction);
-/// The result is not normalized.
+/// Returns the direction, which is not normalized.
 [[nodiscard]] glm::vec3 unpack(PackedNormal packed);
 
 /// Facets that meet at a larger angle keep an edge between them.
 inline constexpr double crease_cosine = 0.766044443118978;  // 40 degrees
 
-/// Corner normals in mesh space, by triangle. Normals of triangles that were not requested are undefined.
+/// Corner normals in mesh space, three for each triangle. Normals of triangles that were not requested are undefined.
 using PackedCornerNormals = Buffer<std::array<PackedNormal, 3>>;
 
-/// A normal for each corner of the triangles for which `is_wanted` is true: the mean of the facet normals at the
-/// corner's exact position, weighted by area and by the angle at the corner. Only facets within the crease angle of the
-/// corner's own facet count. Degenerate facets do not count; their normals are arbitrary. O(triangles).
+/// Returns a normal for each corner of the triangles for which `is_wanted` is true: the mean of the facet normals at
+/// the corner's exact position, weighted by area and by the angle at the corner. Only facets within the crease angle of
+/// the corner's own facet count. Degenerate facets do not count, and their own normals are arbitrary. O(triangles).
 [[nodiscard]] PackedCornerNormals smooth_normals(const Mesh& mesh, const std::function<bool(std::uint32_t)>& is_wanted,
                                                  const Execution& execution = {});
 
@@ -183,26 +184,27 @@ class TriangleStore {
     const Mesh* mesh;
     std::uint32_t mesh_number;
     ToWorld world;
-    glm::mat3 normal_matrix;  ///< takes normals to world space; any length
+    glm::mat3 normal_matrix;  ///< turns normals to world space; their length changes
     bool is_mirrored;
 
-    [[nodiscard]] bool holds(PrimitiveId id) const { return id - first < count; }  // wraps for ids below
+    /// The difference wraps around for ids below `first`.
+    [[nodiscard]] bool holds(PrimitiveId id) const { return id - first < count; }
   };
 
   /// Borrows the surfaces and their scene. O(instances).
   explicit TriangleStore(const Surfaces& surfaces);
 
-  /// Makes smooth normals for the large primitives of meshes without normals. The first call for a mesh makes only the
-  /// requested ones. The second makes all normals of the mesh, since more requests are likely to follow.
+  /// Makes smooth normals for the large primitives of meshes without normals. The first call for a mesh makes the
+  /// normals of these primitives only. The second call makes all normals of the mesh, because more requests are likely.
   void smooth(const BitSet& large, const Execution& execution);
 
   /// Updates the placement of an instance that has moved.
   void follow(const Surfaces& surfaces, std::uint32_t instance);
 
-  /// The placement that holds `id`; tries `guess` first.
+  /// Returns the placement that holds `id`. Tries `guess` first.
   [[nodiscard]] const Placement& placement_with(PrimitiveId id, const Placement& guess) const;
   [[nodiscard]] const Placement& first_placement() const { return placements_.front(); }
-  /// The smooth normals of a mesh: empty if the mesh has its own normals, or none were requested.
+  /// Returns the smooth normals of a mesh, or none if the mesh has its own normals, or none were requested.
   [[nodiscard]] const PackedCornerNormals& smooth_normals_of(std::uint32_t mesh) const { return smooth_[mesh]; }
 
  private:
@@ -218,9 +220,9 @@ class TriangleStore {
 /// Sets up triangles with their attributes in world space, for one view.
 class TriangleSource {
  public:
-  /// Borrows `store` and `large`. Large primitives of meshes without normals are smooth, and the store must have their
-  /// normals. Other primitives of these meshes are flat; all are if `large` is null.
-  /// If `has_texcoords` is false, setups have no texture coordinates: not all pictures need them.
+  /// Borrows `store` and `large`. On meshes without normals, the primitives in `large` are smooth, and the store must
+  /// have their normals. The other primitives of these meshes are flat; without `large`, all are.
+  /// If `has_texcoords` is false, setups have no texture coordinates, which not all pictures need.
   TriangleSource(const TriangleStore& store, const View& view, const BitSet* large, bool has_texcoords = true)
       : rays_(view), large_(large), store_(store), has_texcoords_(has_texcoords) {}
 
@@ -253,7 +255,7 @@ struct TexcoordRequest {
   std::uint32_t set;
   int begin, end;
 };
-/// Fills `out` for these fragments, as interpolate_geometry() does for the first set; overwrites entries behind them.
+/// Fills `out` for these fragments in the manner of interpolate_geometry(). Overwrites entries behind them.
 void interpolate_texcoords(const TexcoordRequest& request, TexcoordLanes& out, Isa isa);
 
 }  // namespace frontmost::shading

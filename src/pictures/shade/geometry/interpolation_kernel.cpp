@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From set-up triangles to fragments, a whole vector at a time. The fragments of a vector may be of several triangles.
-// So each triangle value of a formula is assembled lane by lane, and then the formula is evaluated once:
+// Interpolates from set-up triangles to fragments, a whole vector at a time. The fragments of a vector may lie on
+// several triangles. So each value of a triangle is first assembled lane by lane, and then the formula is evaluated
+// once:
 //
 //   triangles      A A A B B C C C
 //   corner.x       a a a b b c c c
@@ -65,14 +66,14 @@ class VectorTriangles {
     }
   }
 
-  /// The value get(triangle) of each lane's triangle.
+  /// Returns the value get(triangle) of each lane's triangle.
   template <class Get>
   [[nodiscard]] HWY_INLINE VF operator()(const Get& get) const {
     VF value = All(get(*triangles_[0]));
     for (std::size_t t = 1; t < count_; ++t) value = hn::IfThenElse(masks_[t], All(get(*triangles_[t])), value);
     return value;
   }
-  /// The value get(triangle) of each lane's triangle, a vector of three.
+  /// Returns the value get(triangle) of each lane's triangle, where the value is a vector of three.
   template <class Get>
   [[nodiscard]] HWY_INLINE VF3 three(const Get& get) const {
     return {(*this)([&](const TriangleSetup& t) { return get(t).x; }),
@@ -91,7 +92,7 @@ class VectorTriangles {
   const TriangleSetup* triangles_[kMaxLanes];
 };
 
-/// barycentric() of geometry.h for vectors.
+/// The weights that barycentric() of geometry.h returns, for a vector of fragments.
 struct Weights {
   VF3 weight;
   VF divisor;
@@ -141,7 +142,8 @@ HWY_INLINE VF3 Chosen(MF mask, const VF3& yes, const VF3& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-/// The unit normal interpolated from the corner normals; the plane's where these cancel out.
+/// Returns the unit normal interpolated from the corner normals, or that of the plane where the corner normals cancel
+/// out.
 HWY_INLINE VF3 SmoothNormal(const VF3Corners& normals, const VF3& plane, const VF3& weight) {
   const VF3 n = Between(normals, weight);
   // An interpolation of unit vectors is never longer than 1.
@@ -153,9 +155,9 @@ HWY_INLINE VF3 SmoothNormal(const VF3Corners& normals, const VF3& plane, const V
   return {mixed(n.x, plane.x), mixed(n.y, plane.y), mixed(n.z, plane.z)};
 }
 
-/// The point, moved towards the curved surface that the corner normals suggest: the mean of its projections onto the
-/// corners' tangent planes, outwards only. Shadows looked up there hide the facets along the terminator. (J. Hanika,
-/// Hacking the Shadow Terminator, in Ray Tracing Gems II, 2021.)
+/// Returns the point, moved towards the curved surface that the corner normals suggest: the mean of its projections
+/// onto the corners' tangent planes, outwards only. Shadows looked up there hide the facets along the terminator. (J.
+/// Hanika, Hacking the Shadow Terminator, in Ray Tracing Gems II, 2021.)
 HWY_INLINE VF3 Lifted(const VF3Corners& corners, const VF3Corners& normals, const VF3& position, const VF3& weight) {
   VF3 lifted = position;
   const auto lift = [&](const VF3& corner, const VF3& normal, VF of_corner) {
@@ -168,7 +170,7 @@ HWY_INLINE VF3 Lifted(const VF3Corners& corners, const VF3Corners& normals, cons
   return lifted;
 }
 
-/// The unit vector towards the eye from a point that is relative to the eye.
+/// Returns the unit vector towards the eye from a point that is relative to the eye.
 HWY_INLINE VF3 ToEye(const VF3& p) {
   const VF length2 = Dot(p, p), least = All(1e-36f);
   const VF scale = hn::Div(All(-1.0f), hn::Sqrt(hn::IfThenElse(hn::Gt(length2, least), length2, least)));
@@ -203,14 +205,14 @@ HWY_INLINE Coordinate CoordinateAt(const VectorTriangles& of, CoordinateKind kin
   return {value, change(&Affine::step_x), change(&Affine::step_y)};
 }
 
-/// The first fragment, and the requested set of texture coordinates.
+/// The vector of fragments that begins at `i`, and the requested set of texture coordinates.
 struct TexcoordPlace {
   int i;
   std::uint32_t set;
   const PixelSteps* steps;
 };
 
-/// Converts changes per unit of the screen to changes per step.
+/// Returns the change of a coordinate along a step, from its changes per unit of the screen.
 HWY_INLINE VF AlongStep(const Coordinate& c, const Lane2& step, int i) {
   const DF d;
   return hn::Add(hn::Mul(c.dx, hn::LoadU(d, &step.x[i])), hn::Mul(c.dy, hn::LoadU(d, &step.y[i])));
@@ -229,7 +231,7 @@ HWY_INLINE void StoreTexcoords(const VectorTriangles& of, const Weights& w, Texc
   Store(u.dy, v.dy, out.dy, place.i);
 }
 
-/// Triangles without colours are exactly white.
+/// Stores the interpolated colours. Triangles without colours are exactly white.
 void StoreColors(const VectorTriangles& of, const VF3& weight, Geometry& out, int i) {
   Lane* lanes[4] = {&out.color.x, &out.color.y, &out.color.z, &out.alpha};
   const MF has_color = hn::Gt(of([](const TriangleSetup& t) { return float(t.has_color); }), hn::Zero(DF()));

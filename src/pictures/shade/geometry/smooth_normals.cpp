@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Corners are sorted into buckets by a hash of their position. A bucket fits into the first cache levels, and one
+// Corners are sorted into buckets by a hash of their positions. A bucket fits into the first cache levels, and one
 // thread works on it. Corners keep the order of their triangles, so sums do not depend on the number of threads.
-// Positions without a requested triangle are dropped first, which on a closed mesh saves about half of the work.
+// Positions at which no triangle is requested are dropped first. On a closed mesh this saves about half of the work.
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +17,9 @@ namespace {
 
 constexpr std::size_t kTrianglesAtOnce = 1u << 13;
 constexpr std::size_t kCornersPerBucket = 4096;
-/// With more corners at one position, every facet keeps its own normal, because all pairs would be compared.
+/// If more corners have one position, every facet keeps its own normal there, because all pairs would be compared.
 constexpr std::size_t kMostCorners = 256;
-/// Corners have 32-bit numbers. Larger meshes keep their facets' normals.
+/// Corners have 32-bit numbers, so on larger meshes every facet keeps its own normal.
 constexpr std::size_t kMostTriangles = std::size_t(1) << 30;
 
 using PositionBits = std::array<std::uint32_t, 3>;
@@ -38,7 +38,7 @@ std::uint32_t hash_of(const PositionBits& bits) {
   return h ^ (h >> 16);
 }
 
-/// The angle from 0 to pi with this ratio of sine and cosine, to 0.005: precise enough for a weight.
+/// Returns the angle from 0 to pi with this ratio of sine and cosine, to 0.005, which is precise enough for a weight.
 double angle_of(double sine, double cosine) {
   const double c = std::abs(cosine);
   const bool steep = sine > c;
@@ -184,10 +184,10 @@ class Smoother {
   std::uint32_t touched_mask_ = 0;
   int bucket_bits_ = 1;
   std::vector<std::uint32_t> bucket_begin_;
-  Buffer<std::uint32_t> corners_;  ///< by bucket, ascending in each
+  Buffer<std::uint32_t> corners_;  ///< corner numbers by bucket, ascending in each bucket
 };
 
-/// The corners of one bucket in chains of equal position: an open-addressing table.
+/// The corners of one bucket, in a chain for each position. An open-addressing table finds the chains.
 class Chains {
  public:
   static constexpr std::uint32_t none = 0xFFFFFFFFu;
@@ -198,7 +198,7 @@ class Chains {
     slots_.assign(size, none);
   }
 
-  /// Appends entry i to the chain of the first entry that `is_same(first)`, or starts one.
+  /// Appends entry i to the chain whose first entry satisfies is_same(first), or starts a chain.
   template <class IsSame>
   void add(std::uint32_t i, std::uint32_t hash, const IsSame& is_same) {
     const std::size_t mask = slots_.size() - 1;

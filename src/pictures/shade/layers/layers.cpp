@@ -20,8 +20,8 @@ using abuffer_detail::TileParts;
 
 namespace {
 
-/// The first fragment within the 2 x 2 pixels around pixel p that has the same primitive, the same samples and the same
-/// depth rank as fragment `i`; `i` itself if none comes before it.
+/// Returns the first fragment within the 2 x 2 pixels around pixel p that has the same primitive, the same samples and
+/// the same depth rank as fragment `i`. Returns `i` if no other fragment comes before it.
 std::size_t shared_fragment(const Rectangle& pixels, const PixelLists& lists, std::size_t p, std::size_t i) {
   const auto width = std::size_t(pixels.width), x = p % width, y = p / width;
   const std::size_t left = x - x % 2, top = y - y % 2;
@@ -36,7 +36,7 @@ std::size_t shared_fragment(const Rectangle& pixels, const PixelLists& lists, st
   return i;
 }
 
-/// Colours the fragments of rectangles, one after another; several threads may call at once.
+/// Colours the fragments of rectangles. Several threads may call it at once.
 class LayerShader {
  public:
   LayerShader(const TriangleSource& source, const FragmentPass& pass, const FragmentShader::Colorist& colorist,
@@ -45,13 +45,13 @@ class LayerShader {
     for (const glm::ivec2& s : pass.samples()) positions_.push_back(glm::vec2(s) / 256.0f);
   }
 
-  /// Sets the colour numbers[i] of every fragment i, shaded at the mean of its samples. At each_2x2, 2 x 2 pixels share
-  /// a colour where the same primitive covers the same samples at the same depth rank.
+  /// Sets the colour numbers[i] of every fragment i, which is shaded at the mean of its samples. At the rate each_2x2,
+  /// the pixels of a block share a colour if the same primitive covers the same samples at the same depth rank.
   void shade(const Rectangle& pixels, const PixelLists& lists, std::span<const std::uint32_t> numbers,
              FragmentColors& colors) const {
     const auto shader = shaders_.borrow([] { return std::make_unique<FragmentShader>(); });
     const auto receive = [&](const FragmentShader::Shaded& s) { colors.set(s.number, s.light, s.alpha, s.alphas); };
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> shared;  // from, to
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> shared;  // colour numbers: from, to
     shader->begin(source_, colorist_, isa_);
     for (std::size_t p = 0; p + 1 < lists.begin.size(); ++p) {
       const glm::vec2 corner(float(pixels.x + int(p) % pixels.width), float(pixels.y + int(p) / pixels.width));
@@ -71,7 +71,7 @@ class LayerShader {
   }
 
  private:
-  /// The mean of the covered positions, in pixels.
+  /// Returns the mean of the covered positions, in pixels.
   [[nodiscard]] glm::vec2 centroid(std::uint64_t mask) const {
     glm::vec2 sum(0);
     float count = 0;
@@ -99,7 +99,7 @@ struct DeepSample {
   PrimitiveId primitive;
 };
 
-/// Makes the samples of one rectangle.
+/// Makes the deep samples of one rectangle.
 class PartMaker {
  public:
   PartMaker(const View& view, const FragmentPass& pass, const LayerShader& shader)
@@ -120,7 +120,7 @@ class PartMaker {
   }
 
  private:
-  /// `corner`: the pixel's corner relative to the rectangle's, in 1/256 pixel.
+  /// `corner` is the vector from the rectangle's corner to that of the pixel, in 1/256 pixel.
   void add_pixel(const PixelLists& lists, std::size_t pixel, const std::vector<glm::vec4>& all_colors,
                  const glm::ivec2& corner, std::vector<DeepSample>& out) const {
     const std::size_t begin = lists.begin[pixel], count = lists.begin[pixel + 1] - begin;
@@ -135,7 +135,7 @@ class PartMaker {
     float left = 1;
     for (std::size_t i = 0; i < fragments.size(); ++i) {
       if (!(parts[i] > 0 && left > 0)) continue;
-      // Relative to the uncovered rest, so that compositing gives this part again.
+      // This alpha is relative to the uncovered rest, so that compositing gives parts[i] again.
       const float alpha = std::min(parts[i] / left, 1.0f);
       out.push_back({glm::vec4(glm::vec3(colors[i]) * alpha, alpha), depth_of_key(view_, fragments[i].key),
                      fragments[i].primitive});
@@ -189,7 +189,7 @@ void shade_layers(const TriangleSource& source, const FragmentPass& pass, const 
 std::vector<float> shown_parts(std::span<const Fragment> fragments, std::span<const float> alphas,
                                std::size_t sample_count, const KeyAt& key_at) {
   std::vector<float> parts(fragments.size(), 0.0f);
-  // Sorted by negated key, so the greatest key is first, then by id.
+  // The list is sorted by negated key, so that the greatest key comes first, and then by id.
   std::vector<std::tuple<float, PrimitiveId, std::uint32_t>> order;
   for (std::size_t s = 0; s < sample_count; ++s) {
     order.clear();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of scenes with see-through materials. The A-buffer knows the order of fragments and their sub-samples; here
-// every fragment gets its colour and its alpha, textures included.
+// Pictures of scenes with see-through materials. The A-buffer has the fragments of each pixel in depth order, with
+// their sub-samples. Here every fragment gets its colour and its alpha, textures included.
 #pragma once
 
 #include <functional>
@@ -10,20 +10,21 @@
 
 namespace frontmost::shading {
 
-/// Shades every visible fragment once and composites them. `paint_otherwise` returns whether it has painted a tile,
-/// which then needs no layers.
+/// Shades every visible fragment once and composites them. `paint_otherwise` may paint a tile itself, which then needs
+/// no layers. It returns whether it did.
 void shade_layers(const TriangleSource& source, const abuffer_detail::FragmentPass& pass,
                   const abuffer_detail::FragmentPass::LeaveOut& paint_otherwise, const Painting& painting,
                   const Execution& execution);
 
-/// The visible share of a pixel for each of its fragments, which come nearest first: its contribution when fragments
-/// are composited in exact order at every sub-sample. `alphas` are the fragments' own; `key_at(i, s)` is the key of
-/// fragment i at sub-sample s. O(n * sub-samples) for n fragments that keep their order, else O(n log n * sub-samples).
+/// Returns, for each fragment of a pixel, the share that it contributes to the pixel if fragments are composited in
+/// exact order at every sub-sample. The fragments come nearest first. `alphas` are the fragments' own; key_at(i, s) is
+/// the key of fragment i at sub-sample s. O(n * sub-samples) for n fragments that keep their order, else O(n log n *
+/// sub-samples).
 using KeyAt = std::function<float(std::size_t fragment, std::size_t sample)>;
 [[nodiscard]] std::vector<float> shown_parts(std::span<const Fragment> fragments, std::span<const float> alphas,
                                              std::size_t sample_count, const KeyAt& key_at);
 
-/// The result of shade_deep(): every fragment with its colour, in depth order. The pass already has the opacity.
+/// Returns the result of shade_deep(): every fragment with its colour, in depth order. The opacity is that of the pass.
 [[nodiscard]] DeepImage deep_layers(const Surfaces& surfaces, const View& view, const TriangleSource& source,
                                     const abuffer_detail::FragmentPass& pass, const FragmentShader::Colorist& colorist,
                                     const Execution& execution);

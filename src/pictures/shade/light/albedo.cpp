@@ -9,7 +9,8 @@
 namespace frontmost::shading {
 namespace {
 
-/// In units of 1 / 65535, each summed over 4000 x 256 normals of the lobe; lighting tests sum some of them again.
+/// The table in units of 1 / 65535. Each value is a sum over 4000 x 256 normals of the lobe; lighting tests check some
+/// of the sums.
 constexpr std::uint16_t kParts[2 * MirroredParts::size * MirroredParts::size] = {
     65535, 65502, 65535, 65195, 65535, 64182, 65535, 62523, 65535, 60258, 65535, 57443, 65535, 54146, 65535, 50446,
     65535, 46432, 65535, 42196, 65535, 37833, 65535, 33439, 65535, 29105, 65535, 24916, 65535, 20949, 65535, 17268,
@@ -148,12 +149,12 @@ constexpr MirroredParts kTable = [] {
   return table;
 }();
 
-/// Steps over half a turn, and steps of N.L.
+/// The number of steps over half a turn, and the number of steps of N.L.
 constexpr int kSheenSteps = 24;
 constexpr double kCosine = 0.99144486137381038, kSine = 0.13052619222005157;             // of pi / 24
 constexpr double kFirstCosine = 0.99785892323860348, kFirstSine = 0.065403129230143062;  // of pi / 48
 
-/// The light of one ring of directions, one for each step around the normal.
+/// Sums the sheen over light directions with the same N.L, one for each step of half a turn around the normal.
 double ring_sum(float n_l, float n_v, float roughness) {
   const double in_plane_l = std::sqrt(1 - double(n_l) * double(n_l)),
                in_plane_v = std::sqrt(1 - double(n_v) * double(n_v));

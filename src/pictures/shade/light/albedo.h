@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables of the light that surfaces reflect if it is 1 everywhere, and the formula of the sheen, which has one of them.
+// Tables of the share that surfaces reflect of light that is 1 everywhere, for mirrors and for sheen, and the formula
+// of sheen.
 #pragma once
 
 #include <array>
@@ -9,23 +10,23 @@
 
 namespace frontmost::shading {
 
-/// The share of light that a surface mirrors if it is 1 everywhere, by view angle and roughness: the second factor of
-/// the split sum. (B. Karis. Real Shading in Unreal Engine 4. SIGGRAPH 2013 course.)
+/// The share that a surface mirrors of light that is 1 everywhere, by view angle and roughness. It is the second factor
+/// of the split sum. (B. Karis. Real Shading in Unreal Engine 4. SIGGRAPH 2013 course.)
 ///
 /// The lobe is GGX with Smith's correlated masking. Rows are by roughness and columns by the square root of N.V, both
 /// from 0 to 1. Bilinear look-ups are correct to 0.001; at N.V below 0.02 and roughness below 0.1, to 0.011.
 struct MirroredParts {
-  static constexpr int size = 32, channels = 4;  ///< four, like colours, so that both are read alike
-  /// Channels: the share mirrored by a surface that mirrors everything, the part of it with Schlick's (1 - V.H)^5, and
-  /// two unused zeros.
+  static constexpr int size = 32, channels = 4;  ///< four channels, so that colours and parts are read alike
+  /// The channels are the share for a surface that mirrors everything, that share weighted by (1 - V.H)^5 of Schlick's
+  /// approximation, and two unused zeros.
   std::array<float, std::size_t(channels* size* size)> values;
 };
 
 [[nodiscard]] const MirroredParts& mirrored_parts();
 
-/// The least roughness: fibres that all stand in one direction would shine at a single angle.
+/// The least roughness of sheen, because fibres that all stand in one direction would shine at a single angle.
 inline constexpr float least_sheen_roughness = 0.1f;
-/// Clamped to [least_sheen_roughness, 1]; `least_sheen_roughness` for NaN.
+/// Returns the roughness clamped to [least_sheen_roughness, 1], or `least_sheen_roughness` for NaN.
 [[nodiscard]] inline float shown_sheen_roughness(float roughness) {
   const float bounded = roughness < 1.0f ? roughness : 1.0f;
   return bounded > least_sheen_roughness ? bounded : least_sheen_roughness;
@@ -34,8 +35,8 @@ inline constexpr float least_sheen_roughness = 0.1f;
 struct SheenAngles {
   float n_l, n_v, n_h;  ///< N.V above 0, the others 0 or more
 };
-/// The sheen of fibres that stand out of a cloth, by KHR_materials_sheen: they mirror light if the half vector is
-/// perpendicular to them, and so shine at the rim.
+/// Evaluates the sheen of fibres that stand out of a cloth, by KHR_materials_sheen: they mirror light if the half
+/// vector is perpendicular to them, and so shine at the rim.
 ///
 ///   distribution   (2 + 1/a) / 2 * sin(N.H)^(1/a), a = roughness squared    A. Estevez, C. Kulla. Production Friendly
 ///                  (the factor 1 / pi is the light's)                       Microfacet Sheen BRDF. SIGGRAPH 2017.
@@ -50,13 +51,13 @@ struct SheenAngles {
   return (2.0f + sharpness) * lobe / (8.0f * (in.n_l + in.n_v - in.n_l * in.n_v));
 }
 
-/// The share of light that white fibres scatter if it is 1 everywhere, and so keep from the surface below.
+/// The share that white fibres scatter of light that is 1 everywhere, and so keep from the surface below.
 struct SheenAlbedo {
   static constexpr int size = 24;
-  /// Rows by roughness, from the least one to 1, and columns by the square root of N.V.
+  /// Rows are by roughness, from least_sheen_roughness to 1, and columns by the square root of N.V.
   std::array<float, std::size_t(size* size)> values;
 
-  /// Bilinear; correct to 0.015, and to 0.006 where the roughness is above 0.2.
+  /// Interpolates bilinearly. The error is at most 0.015, and at most 0.006 if the roughness is above 0.2.
   [[nodiscard]] float at(float n_v, float shown_roughness) const;
 };
 [[nodiscard]] const SheenAlbedo& sheen_albedo();

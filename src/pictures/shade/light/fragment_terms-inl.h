@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Terms that all passes of light share. Plain loops over lanes with only + - * / and square roots are compiled once for
-// each instruction set: the compiler vectorizes them, and every machine gives the same bits.
+// Terms that all passes of light share. They are plain loops over lanes with only + - * / and square roots, and are
+// compiled once for each instruction set. So compilers vectorize them, and every machine gives the same bits.
 
 // This file is included once for every target.
 #if defined(FRONTMOST_SHADE_LIGHT_FRAGMENT_TERMS_INL_H_) == defined(HWY_TARGET_TOGGLE)
@@ -31,15 +31,16 @@ inline float mix(float a, float b, float t) { return a + (b - a) * t; }
 inline Direction direction_of(const Lane3& lanes, int i) { return {lanes.x[i], lanes.y[i], lanes.z[i]}; }
 inline Direction direction_of(const glm::vec3& v) { return {v.x, v.y, v.z}; }
 
-/// (1 - c)^5, for Schlick's approximation.
+/// Returns (1 - c)^5, for Schlick's approximation.
 inline float fifth_power_below_one(float c) {
   const float x = clamp01(1.0f - c), x2 = x * x;
   return x2 * x2 * x;
 }
 
-/// The least roughness is 0.09, because the highlight of a smoother surface could fall between two pixels.
+/// Returns the roughness, limited to 0.09 to 1, because the highlight of a smoother surface could fall between two
+/// pixels.
 inline float shown_roughness(float roughness) { return at_most(at_least(roughness, 0.09f), 1.0f); }
-/// At least a little above 0: a bumpy normal may lean away from the viewer.
+/// Returns N.V, but at least a little above 0, because a bumpy normal may lean away from the viewer.
 inline float towards_viewer(const Direction& normal, const Direction& to_viewer) {
   return at_least(dot(normal, to_viewer), 1e-3f);
 }
@@ -59,7 +60,7 @@ inline Reflection reflection_of(float base, float metallic) {
   return {base * (1.0f - metallic), mix(dielectric, base, metallic)};
 }
 
-/// Surfaces of batches in which all materials mirror like ordinary ones.
+/// The surfaces of a batch without LayerLanes::has_dielectric.
 struct PlainSurface {
   static inline Reflections at(const FragmentBatch& batch, int i) {
     const Reflectance& m = batch.material;
@@ -67,11 +68,12 @@ struct PlainSurface {
     return {reflection_of(m.base.x[i], metallic), reflection_of(m.base.y[i], metallic),
             reflection_of(m.base.z[i], metallic)};
   }
-  /// The share of light that reaches the diffuse part of a channel: `own`, the share that the channel does not mirror.
+  /// Returns the share of light that reaches the diffuse part of a channel. This is the share that the channel does not
+  /// mirror, `own`.
   static inline float below(const FragmentBatch& /*batch*/, int /*i*/, float own, float /*least*/) { return own; }
 };
 
-/// Surfaces of batches with LayerLanes::has_dielectric: some mirror differently, or transmit light.
+/// The surfaces of a batch with LayerLanes::has_dielectric: some mirror differently, or transmit light.
 struct LayeredSurface {
   static inline Reflections at(const FragmentBatch& batch, int i) {
     const Reflectance& m = batch.material;
@@ -82,7 +84,8 @@ struct LayeredSurface {
             {m.base.y[i] * (1.0f - metallic) * stays, mix(layers.f0.y[i], m.base.y[i], metallic), f90},
             {m.base.z[i] * (1.0f - metallic) * stays, mix(layers.f0.z[i], m.base.z[i], metallic), f90}};
   }
-  /// For such fragments the least share of all channels, so that coloured mirroring does not tint the diffuse part.
+  /// Returns the share of light that reaches the diffuse part of a channel. If the fragment's is_dielectric is 1, it is
+  /// the least share of all channels, so that coloured mirroring does not tint the diffuse part.
   static inline float below(const FragmentBatch& batch, int i, float own, float least) {
     return batch.layers.is_dielectric[i] > 0.5f ? least : own;
   }

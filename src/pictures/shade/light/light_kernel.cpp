@@ -26,7 +26,7 @@ struct LobeInput {
   float n_l, n_v, n_h, roughness;
 };
 
-/// GGX distribution times Smith's height-correlated masking. The factor 1 / pi is part of the light's unit.
+/// Returns the GGX distribution times Smith's height-correlated masking. The factor 1 / pi is part of the light's unit.
 inline float ggx(const LobeInput& in) {
   const float alpha = in.roughness * in.roughness, alpha2 = alpha * alpha;
   const float t = in.n_h * in.n_h * (alpha2 - 1.0f) + 1.0f;
@@ -49,15 +49,15 @@ inline DirectTerms direct_terms(const Direction& l, const FragmentBatch& batch, 
   return t;
 }
 
-/// The mirrored share by Schlick's approximation.
+/// Returns the mirrored share by Schlick's approximation.
 inline float mirrored(const Reflection& m, const DirectTerms& t) { return m.f0 + (m.f90 - m.f0) * t.fresnel; }
 
-/// `below`: the share of the light that reaches the diffuse part.
+/// Returns the reflected light of one channel. `below` is the share of the light that reaches the diffuse part.
 inline float sent_back(const DirectTerms& t, float matt, float mirrored, float below) {
   return t.diffuse * matt * below + t.specular * mirrored;
 }
 
-/// `direction_at(i)` is the direction from fragment i to the light.
+/// Adds the light that surfaces reflect. direction_at(i) is the direction from fragment i to the light.
 template <class Surface, class DirectionAt>
 void AddToSurface(const glm::vec3& color, const DirectionAt& direction_at, FragmentBatch& batch) {
   const float red = color.x, green = color.y, blue = color.z;
@@ -72,7 +72,7 @@ void AddToSurface(const glm::vec3& color, const DirectionAt& direction_at, Fragm
   }
 }
 
-/// The cloth below reflects light separately.
+/// Adds the light that fibres scatter. The cloth below reflects light separately.
 template <class DirectionAt>
 void AddSheen(const glm::vec3& color, const DirectionAt& direction_at, FragmentBatch& batch) {
   LayerLanes& layers = batch.layers;
@@ -102,8 +102,8 @@ struct Channels {
   float r, g, b;
 };
 
-/// Khronos PBR Neutral Tone Mapper, 2024. A dielectric's reflection of grey surroundings, 0.04, is subtracted. Above
-/// 0.8 - 0.04 the greatest channel approaches 1, and the others approach it.
+/// Khronos PBR Neutral Tone Mapper, 2024. A dielectric's reflection of grey surroundings, 0.04, is subtracted. If the
+/// greatest channel is above 0.8 - 0.04, it is compressed to below 1, and the other channels move towards it.
 struct KhronosNeutral {
   inline Channels operator()(const Channels& c) const {
     constexpr float start = 0.8f - 0.04f, rest = 1.0f - start, fading = 0.15f;
@@ -129,7 +129,7 @@ struct Filmic {
   }
   inline Channels operator()(const Channels& in) const {
     constexpr float exposure = 1.0f / 0.6f;
-    // Above this value the curve is level; the limit keeps squares finite.
+    // The curve is level above this limit, which keeps squares finite.
     const Channels c{at_most(in.r * exposure, 1e15f), at_most(in.g * exposure, 1e15f), at_most(in.b * exposure, 1e15f)};
     const float r = curve(0.59719f * c.r + 0.35458f * c.g + 0.04823f * c.b);
     const float g = curve(0.07600f * c.r + 0.90834f * c.g + 0.01566f * c.b);
@@ -139,7 +139,7 @@ struct Filmic {
   }
 };
 
-/// Maps any number to the domain of the curves.
+/// Returns the exposed light as a number that the curves can map: 0 to 1e30, and 0 for NaN.
 inline float exposed(float light, float exposure) { return at_most(at_least(light * exposure, 0.0f), 1e30f); }
 
 template <class Map>
@@ -157,7 +157,7 @@ void FinishBy(const Map& map, float exposure, FragmentBatch& batch) {
 
 }  // namespace
 
-/// The light of a lamp at each fragment, by its distance, range window and cone.
+/// Computes the light of a lamp at each fragment, by its distance, range window and cone.
 void FindLampLight(const Lamp& lamp, const FragmentBatch& batch, LampLight& out) {
   const Lane3& position = batch.geometry.position;
   const Direction at = direction_of(lamp.position), axis = direction_of(lamp.axis);

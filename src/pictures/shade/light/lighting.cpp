@@ -11,27 +11,27 @@
 namespace frontmost::shading {
 namespace {
 
-/// The forward direction of an environment, perpendicular to `up`.
+/// Returns the forward direction of an environment, perpendicular to `up`.
 glm::dvec3 ahead_of(const View& view, const glm::dvec3& up, bool turns_with_camera) {
   const auto levelled = [&](const glm::dvec3& v) { return v - up * glm::dot(v, up); };
   // The direction in which NamedView::front looks.
   const glm::dvec3 front = std::abs(up.z) > 0.5 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1);
   if (!turns_with_camera) return front;
-  // Where the view is straight up or down, the picture's top is ahead, or behind.
+  // If the camera looks straight down, the top of the picture is ahead; if it looks straight up, the top is behind.
   const glm::dvec3 forward = levelled(view.forward());
   constexpr double least = 1e-3;
   if (glm::dot(forward, forward) > least) return unit(forward);
   return unit(levelled(glm::dot(view.forward(), up) < 0 ? view.up() : -view.up()));
 }
 
-/// The axes of an environment: x right, y up, z backwards.
+/// Returns the axes of an environment: x right, y up, z backwards.
 glm::dmat3 world_from_environment(const View& view, const glm::dvec3& up, const LightOptions& options, bool turns) {
   const glm::dvec3 ahead = ahead_of(view, up, turns), right = glm::cross(ahead, up);
   const double c = std::cos(options.environment_angle), s = std::sin(options.environment_angle);
   return {right * c + ahead * s, up, right * s - ahead * c};
 }
 
-/// The moments' polynomial, rotated to world axes.
+/// Returns the moments' polynomial, rotated to world axes.
 IrradiancePolynomial polynomial_of(const IrradianceMoments& moments, const glm::dmat3& world_from_environment) {
   IrradiancePolynomial p;
   for (int k = 0; k < 3; ++k) {
@@ -54,7 +54,7 @@ IrradiancePolynomial polynomial_of(const IrradianceMoments& moments, const glm::
 
 constexpr std::size_t kMostLights = 4096;
 
-/// The radiance of a white diffuse surface that faces the light; for lamps, at distance 1.
+/// Returns the radiance of a white diffuse surface that faces the light, for lamps at distance 1.
 glm::vec3 color_of(const Light& light) {
   // Brighter lights would overflow floats in products with the mirrored share of smooth surfaces.
   constexpr double brightest = 1e12;
@@ -79,7 +79,7 @@ Lamp lamp_of(const Light& light, const glm::dvec3& eye) {
   return lamp;
 }
 
-/// Schlick's approximation.
+/// Returns the mirrored share by Schlick's approximation.
 float mirrored(float f0, float f90, float cosine) {
   const float x = std::clamp(1 - cosine, 0.0f, 1.0f), x2 = x * x;
   return f0 + (f90 - f0) * (x2 * x2 * x);
@@ -89,18 +89,18 @@ float cosine_of_view(const Geometry& g, int i) { return std::max(glm::dot(g.norm
 
 float greatest(const glm::vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 
-/// The share of light that fibres leave for the surface below.
+/// Returns the share of light that fibres leave for the surface below.
 float below_sheen(const FragmentBatch& batch, int i) {
   const float roughness = shown_sheen_roughness(batch.layers.sheen_roughness[i]);
   return 1 - greatest(batch.layers.sheen.at(i)) * sheen_albedo().at(cosine_of_view(batch.geometry, i), roughness);
 }
 
-/// The share of light that a varnish leaves for the surface below.
+/// Returns the share of light that a varnish leaves for the surface below.
 float below_coat(const FragmentBatch& batch, int i) {
   return 1 - batch.layers.coat[i] * mirrored(0.04f, 1, cosine_of_view(batch.coat->geometry, i));
 }
 
-/// The share of light that neither the surface nor a layer over it mirrors.
+/// Returns the share of light that neither the surface nor a layer over it mirrors.
 float passes_surface(const FragmentBatch& batch, int i) {
   const LayerLanes& layers = batch.layers;
   const float cosine = cosine_of_view(batch.geometry, i);
@@ -166,7 +166,8 @@ bool may_reach(const Lamp& lamp, const BatchBounds& bounds) {
   const glm::vec3 nearest = glm::clamp(lamp.position, bounds.low, bounds.high) - lamp.position;
   if (lamp.range > 0 && glm::dot(nearest, nearest) > lamp.range * lamp.range * spare) return false;
   if (lamp.cone_scale == 0) return true;
-  // Tests a sphere around the box against a cone of at most a half-space, by the distance of its centre from the cone.
+  // Tests a sphere around the box against the cone, by the distance of the sphere's centre from the cone. A cone is at
+  // most a half-space.
   const glm::vec3 centre = 0.5f * (bounds.low + bounds.high) - lamp.position;
   const float radius = 0.5f * glm::length(bounds.high - bounds.low), size = glm::length(centre);
   const float along = glm::dot(centre, lamp.axis);
@@ -208,7 +209,7 @@ void lay_layers_over(FragmentBatch& batch) {
 }
 
 void let_through(FragmentBatch& batch, Mirroring mirroring) {
-  // Least opacity where light is mirrored: dividing by it stays finite, and it is invisible.
+  // The least opacity where light is mirrored. It is invisible, and the division by it stays finite.
   constexpr float least = 0x1p-20f;
   const LayerLanes& layers = batch.layers;
   for (int i = 0; i < batch.coverage.count; ++i) {

@@ -7,13 +7,14 @@
 //   finish_light       exposure and tone mapping, to a range that a picture can hold
 //   let_through        opacity of glass, once light holds the final colour
 //
-// Varnish and fibres of cloth reflect light themselves and keep some of it from the surface below; glass transmits
-// light. Their light is in batch.coat->light and batch.layers.sheen_light until finish_light() combines all.
+// Varnish and fibres of cloth reflect light themselves and keep some of it from the surface below. Glass transmits
+// light. The light of varnish is in batch.coat->light, and that of fibres in batch.layers.sheen_light, until
+// finish_light() combines all.
 //
 // One key light moves with the camera. It shines from the upper left in front of the model, so that the visible side is
-// lit and shadows fall to the lower right. A studio environment turns with the camera. Intensities are radiances of a
-// white diffuse surface. One that faces the key light is just below 1, so textures keep their colours without tone
-// mapping.
+// lit and shadows fall to the lower right. A studio environment turns with the camera. An intensity is the radiance of
+// a white diffuse surface that faces the light. For the key light it is just below 1, so that textures keep their
+// colours without tone mapping.
 #pragma once
 
 #include <span>
@@ -30,13 +31,13 @@ namespace frontmost::shading {
 struct DirectLight {
   glm::vec3 to_light{0, 0, 1};            ///< unit
   glm::vec3 color{0.64f, 0.63f, 0.615f};  ///< radiance of a white diffuse surface that faces it
-  const Lane3* directions = nullptr;      ///< to the light, by fragment, where `to_light` is not that of all
+  const Lane3* directions = nullptr;      ///< directions to the light, by fragment; null if `to_light` holds for all
 
   [[nodiscard]] bool is_on() const { return color != glm::vec3(0); }
 };
 
-/// The radiance of a white diffuse surface in an environment, by its unit normal in world axes: coefficients of the
-/// normal's coordinates and of their products, by colour channel.
+/// The radiance of a white diffuse surface in an environment, as a polynomial of the surface's unit normal in world
+/// axes. The coefficients, by colour channel, are those of the normal's coordinates and of their products.
 struct IrradiancePolynomial {
   glm::vec3 constant{0}, x{0}, y{0}, z{0}, xx{0}, yy{0}, zz{0}, xy{0}, yz{0}, zx{0};
 };
@@ -75,7 +76,7 @@ struct BatchBounds {
   glm::vec3 low, high;
 };
 [[nodiscard]] BatchBounds bounds_of(const FragmentBatch& batch);
-/// False only if none of the lamp's light can arrive in the box, by its range or its cone. Tens of operations.
+/// Returns false only if the lamp's range or cone keeps all of its light from the box. Takes tens of operations.
 [[nodiscard]] bool may_reach(const Lamp& lamp, const BatchBounds& bounds);
 /// Computes the lamp's light at all fragments of the batch.
 void find_lamp_light(const Lamp& lamp, const FragmentBatch& batch, LampLight& light, Isa isa);
@@ -113,37 +114,39 @@ struct PictureLights {
   void set(const DirectLight* key, std::span<const Light> lights, const glm::dvec3& eye);
 };
 
-/// \throws Error bad_argument as documented for LightOptions.
+/// Checks the options of light. \throws Error bad_argument as documented for LightOptions.
 void check_light(const LightOptions& options);
-/// The direction of the key light, of unit length. Precondition: check_light().
+/// Returns the direction of the key light, of unit length. Precondition: check_light().
 [[nodiscard]] glm::vec3 direction_to_key(const View& view, const LightOptions& options);
-/// The intensity of the key light. Precondition: check_light().
+/// Returns the intensity of the key light. Precondition: check_light().
 [[nodiscard]] double key_intensity(const LightOptions& options);
-/// The light for a picture of a scene with this up axis. Borrows the environment, which the options name or leave open.
-/// Precondition: check_light().
+/// Returns the light for a picture of a scene with this up axis. Borrows the environment: the one of the options, or a
+/// default if they have none. Precondition: check_light().
 [[nodiscard]] Lighting lighting_for(const View& view, Axis up, const LightOptions& options,
                                     const Environment& environment);
 
-/// Sets the light to what the material emits, and that of its layers to 0.
+/// Sets the light to what the material emits, and the light of its layers to 0.
 void begin_light(FragmentBatch& batch);
-/// Metallic-roughness with GGX highlights (Schlick's Fresnel, Smith's correlated masking).
+/// Adds a light, reflected by the metallic-roughness model with GGX highlights (Schlick's Fresnel, Smith's correlated
+/// masking).
 void add_direct_light(const DirectLight& light, FragmentBatch& batch, Isa isa);
-/// Adds the environment's light, reflected by the same model, by the split sum and with multiple scattering.
+/// Adds the environment's light, reflected by the same model, with the split sum and multiple scattering.
 void add_surroundings(const Surroundings& around, FragmentBatch& batch, Isa isa);
-/// Combines the layers. The light kept from below uses Fresnel terms of the view direction, for light from all
-/// directions.
+/// Combines the light of the layers with that of the surface below. The share that a layer keeps from below is its
+/// Fresnel term for the view direction, whatever the direction of the light.
 void lay_layers_over(FragmentBatch& batch);
 /// Calls lay_layers_over(), and maps the light to 0 to 1. Unlit materials give their base colour.
 void finish_light(const Lighting& lighting, FragmentBatch& batch, Isa isa);
 
-/// Whether the light that glass mirrors is subtracted from the light that it transmits; by_view is for lit pictures.
+/// Whether let_through() subtracts the light that glass mirrors from the light that glass transmits. by_view is for lit
+/// pictures.
 enum class Mirroring : std::uint8_t { none, by_view };
 /// Sets batch.alphas and the material's alpha of see-through fragments to their opacity, and divides their light by it.
 /// So reflections on glass keep their brightness, however little the glass hides. Precondition:
 /// layers.has_transmission.
 void let_through(FragmentBatch& batch, Mirroring mirroring);
-/// For blending that clips light at white: reflections brighter than that hide what is behind instead.
-/// Precondition: let_through() was called.
+/// Scales light above white down to white, and raises the opacity by the same factor, for blending that clips light at
+/// white. So bright reflections hide what is behind them. Precondition: let_through() was called.
 void hide_by_highlights(FragmentBatch& batch);
 
 }  // namespace frontmost::shading

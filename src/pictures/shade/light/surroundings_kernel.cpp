@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mirrored light comes from two maps of the environment, for the roughnesses next to the surface's own, or from one if
-// a map has exactly that roughness. Maps are read fragment by fragment; all else is plain loops over lanes.
+// Mirrored light comes from two maps of the environment, whose roughnesses are next to the surface's own. One map is
+// enough if it has exactly that roughness. Maps are read fragment by fragment; all else is plain loops over lanes.
 
 #include "shade/light/lighting.h"
 
@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kLastLevel = PrefilteredEnvironment::level_count - 1;
 
-/// Addresses of the light that fragments mirror, and of the share that they mirror.
+/// The texels to read for each fragment: the light that it mirrors, and the share of that light.
 struct MirroredPlaces {
   TexelSquares<batch_capacity> smoother, rougher;  ///< in the maps of the two roughnesses
   std::int32_t level[batch_capacity];              ///< level of the smoother map
@@ -27,7 +27,7 @@ struct MirroredPlaces {
   TexelSquares<batch_capacity> parts;              ///< in MirroredParts
 };
 
-/// The square of MirroredParts' entries around a place.
+/// Returns the square of MirroredParts' entries around a place.
 HWY_INLINE TexelSquare parts_square(float column, float row) {
   constexpr std::int32_t last = MirroredParts::size - 2;
   const auto x = std::int32_t(column), y = std::int32_t(row);
@@ -59,7 +59,8 @@ void FindViews(const Surroundings& around, const FragmentBatch& batch, MirroredV
   }
 }
 
-/// A separate loop, because compilers do not vectorize it together with the one above.
+/// Finds the texels of all views. This loop is separate, because compilers do not vectorize it together with the one
+/// above.
 void FindPlaces(const PrefilteredEnvironment& environment, const MirroredViews& views, int count, MirroredPlaces& out) {
   std::int32_t sizes[kLastLevel + 2];
   for (std::size_t k = 0; k <= kLastLevel; ++k) sizes[k] = environment.levels[k].size();
@@ -75,7 +76,7 @@ void FindPlaces(const PrefilteredEnvironment& environment, const MirroredViews& 
   }
 }
 
-/// The values read, four channels per fragment.
+/// The values that were read, four channels per fragment.
 struct MirroredLight {
   alignas(64) float colors[4 * batch_capacity];
   alignas(64) float parts[4 * batch_capacity];
@@ -97,7 +98,7 @@ void ReadMaps(const PrefilteredEnvironment& environment, const MirroredPlaces& p
   }
 }
 
-/// The monomials of a normal in IrradiancePolynomial.
+/// The monomials of a normal that IrradiancePolynomial multiplies by its coefficients.
 struct Monomials {
   float x, y, z, xx, yy, zz, xy, yz, zx;
 };
@@ -111,7 +112,8 @@ inline float matt_light(const IrradiancePolynomial& p, const Monomials& m, int c
   return at_least(p.constant[channel] + linear + (squares + products), 0.0f);
 }
 
-/// The share mirrored of light that is 1 everywhere by a surface that mirrors everything, and Schlick's part of it.
+/// For light that is 1 everywhere and a surface that mirrors everything: the mirrored share, and that share weighted by
+/// Schlick's (1 - V.H)^5.
 struct MirroredTerms {
   float part, grazing;
 };

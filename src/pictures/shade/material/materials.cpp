@@ -43,7 +43,7 @@ void fill(Lane3& lanes, int count, float value) {
   for (Lane* lane : {&lanes.x, &lanes.y, &lanes.z}) fill(*lane, count, value);
 }
 
-/// The reflectance at normal incidence between air and this index of refraction; an index of 0 means a mirror.
+/// Returns the reflectance at normal incidence between air and this index of refraction. An index of 0 means a mirror.
 float straight_reflectance(float ior) {
   const float ratio = (ior - 1) / (ior + 1);
   return ratio * ratio;
@@ -51,7 +51,7 @@ float straight_reflectance(float ior) {
 
 glm::vec3 absorption_of(const Material::Volume& volume) {
   glm::vec3 absorption;
-  // Black absorbs everything at once, with a finite coefficient.
+  // A black volume absorbs everything at once. The limit keeps its coefficient finite.
   constexpr float least = 1e-30f;
   for (int c = 0; c < 3; ++c)
     absorption[c] = log2_of(std::max(volume.attenuation_color[c], least)) / volume.attenuation_distance;
@@ -106,7 +106,8 @@ class MaterialRun {
     }
   }
 
-  /// Triangles without texture coordinates look at the origin, as if all coordinates were 0.
+  /// Looks up the textures of the fragments [begin, end). Triangles without texture coordinates use the texel at the
+  /// origin.
   void look_up(int begin, int end, MaterialPart part) {
     Reflectance& out = batch_.material;
     glm::vec4 values[sampled_at_once];
@@ -148,7 +149,7 @@ class MaterialRun {
     return set == 0 ? batch_.geometry.texcoord : textures_.further[set - 1];
   }
 
-  /// Sets alpha by the material's alpha mode; fragments without blending are opaque.
+  /// Sets alpha by the material's alpha mode. Fragments without blending are opaque.
   void settle_alpha(int begin, int end) {
     for (int i = begin; i < end; ++i) {
       float& alpha = batch_.material.alpha[i];
@@ -168,7 +169,7 @@ class MaterialRun {
   std::optional<LayerRun> layers_;  ///< none if the material has no layers
 };
 
-/// The material of triangles without one: a light neutral grey whose shape shows on a white page.
+/// Returns the material of triangles without one: a light neutral grey whose shape shows on a white page.
 Material default_material() {
   Material material;
   material.base_color = glm::vec4(0.66f, 0.675f, 0.70f, 1.0f);
@@ -287,7 +288,7 @@ void LayerRun::fill_factors(int begin, int end) {
   });
 }
 
-/// Light leaves a closed volume through back sides; the absorption was already applied at the front.
+/// Whether light leaves a closed volume here, through a back side. The absorption was already applied at the front.
 bool LayerRun::is_way_out(int i) const {
   return m_.volume.thickness > 0 && !m_.double_sided && input_.setups[batch_.coverage.triangle[i]].is_backside;
 }

@@ -13,8 +13,8 @@
 
 namespace frontmost::shading {
 
-/// One use of a normal texture, for the fragments of one batch: normals are turned along the directions in which
-/// texture coordinates grow on the triangle.
+/// Applies a normal texture to the fragments of one batch: turns normals in the directions in which texture coordinates
+/// grow on the triangle.
 class NormalMap {
  public:
   /// Borrows `slot` and `setups`. `scale` multiplies the bumps.
@@ -25,7 +25,7 @@ class NormalMap {
   void turn(std::uint16_t triangle, const glm::vec4& texel, int i, Lane3& normals);
 
  private:
-  /// The unit directions on a triangle in which u and v grow; zero where the coordinates do not span a plane.
+  /// The unit directions on a triangle in which u and v grow. They are zero where the coordinates do not span a plane.
   struct TangentFrame {
     glm::vec3 along_u{0}, along_v{0};
   };
@@ -45,13 +45,14 @@ struct LayerRow {
       thickness;
   bool has_dielectric = false, has_coat = false, has_sheen = false, has_transmission = false;
   float straight = 0.04f;   ///< reflectance at normal incidence, by the index of refraction
-  glm::vec3 absorption{0};  ///< log2 of the absorption, by channel and world unit of length
+  glm::vec3 absorption{0};  ///< log2 of the light left after one world unit of length, by channel
 };
 
-/// Null if the material has no layers. Textures are not set yet. Precondition: limit_numbers() was called.
+/// Returns the layers of a material, or null if it has none. Textures are not set yet. Precondition: limit_numbers()
+/// was called.
 [[nodiscard]] std::unique_ptr<LayerRow> layers_of(const Material& material);
 
-/// The factor by which an instance scales lengths; 0 if it is flattened.
+/// Returns the factor by which an instance scales lengths, or 0 if it is flattened.
 [[nodiscard]] float length_scale_of(const Instance& instance);
 
 /// The data that all runs of fragments share.
@@ -70,16 +71,17 @@ class LayerRun {
         batch_(batch),
         coat_normal_(row.coat_normal, factors.clearcoat.normal_scale, input.setups) {}
 
-  /// Called before textures are looked up and normals turned.
+  /// Sets the lanes of the layers to the material's factors. Must come before textures are looked up and normals
+  /// turned.
   void fill_factors(int begin, int end);
-  /// `sample(slot, use)` calls use(i, value) for the fragments of a part of the run.
+  /// Looks up textures: sample(slot, use) calls use(i, value) for the fragments of a part of the run.
   template <class Sample>
   void look_up(const Sample& sample);
-  /// Called when all other material data is known.
+  /// Computes the lanes that need all other material data, which must be known.
   void settle(int begin, int end);
 
  private:
-  /// Makes room for the material's layers; earlier fragments of the batch have none.
+  /// Begins lanes that no earlier material of the batch needed: gives all fragments values without effect.
   void begin_layers();
   [[nodiscard]] glm::vec3 filter_at(int i) const;
   [[nodiscard]] bool is_way_out(int i) const;
@@ -105,19 +107,20 @@ class MaterialTable {
   /// Borrows `scene`. No textures are prepared yet.
   explicit MaterialTable(const Scene& scene);
 
-  /// Makes the missing mip levels of textures of materials that `is_needed`, which has one entry per material. Existing
-  /// levels keep their addresses. O(texels), in parallel.
+  /// Makes the missing mip levels of the textures of all needed materials. `is_needed` has one entry per material.
+  /// Existing levels keep their addresses. O(texels), in parallel.
   void make_ready(const std::vector<bool>& is_needed, const Execution& execution);
   /// Whether any material has a texture.
   [[nodiscard]] bool has_textures() const { return has_textures_; }
-  /// The factor by which each instance scales lengths.
+  /// Returns the factor by which each instance scales lengths.
   [[nodiscard]] const std::vector<float>& length_scales() const { return length_scales_; }
   /// Updates an instance that has moved.
   void follow(std::uint32_t instance) { length_scales_[instance] = length_scale_of(scene_.instances[instance]); }
   /// Whether make_ready() has nothing left to do.
   [[nodiscard]] bool is_ready() const { return unready_ == 0; }
 
-  /// The triangle's material, or a default one, which is white for meshes with colours: grey would dim these.
+  /// Returns the triangle's material, or the default one. The default is white for meshes with colours, which grey
+  /// would dim.
   [[nodiscard]] const MaterialRow& row_of(const TriangleSetup& triangle) const {
     if (triangle.material < rows_.size()) return rows_[triangle.material];
     return triangle.has_color ? white_ : default_;

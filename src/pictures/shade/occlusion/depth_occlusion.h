@@ -36,8 +36,8 @@ struct OcclusionReach {
 /// Ambient occlusion for successive pictures of a scene.
 class DepthOcclusion {
  public:
-  /// Takes the depths of the first samples, which lie at the first of `samples` positions in a pixel. Reuses the memory
-  /// of earlier pictures.
+  /// Takes the depths of the first samples from `visible`. The picture has `samples` samples per pixel. Reuses the
+  /// memory of earlier pictures.
   void find(const Visible& visible, int samples, const OcclusionReach& reach);
   /// Reduces batch.material.occlusion by nearby occluders.
   void darken(FragmentBatch& batch, Isa isa) const;
@@ -47,9 +47,9 @@ class DepthOcclusion {
   Buffer<float> depths_;
 };
 
-/// \throws Error bad_argument naming the field.
+/// Checks the options of ambient occlusion. \throws Error bad_argument naming the field.
 void check_ambient_occlusion(const ShadeOptions& options);
-/// The default of AmbientOcclusion::radius.
+/// Returns the default of AmbientOcclusion::radius.
 [[nodiscard]] double default_occlusion_radius(const Surfaces& surfaces);
 
 }  // namespace frontmost::shading

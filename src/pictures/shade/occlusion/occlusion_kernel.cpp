@@ -54,7 +54,7 @@ HWY_INLINE EyeVector AlongAxes(const OcclusionGrid& grid, const Lane3& lane, int
 HWY_INLINE VF Clamped(VF value) { return hn::Max(All(-1), hn::Min(value, All(1))); }
 HWY_INLINE VF Root(VF value) { return hn::Sqrt(hn::Max(value, All(0))); }
 
-/// The arc cosine, to 7e-5. (M. Abramowitz, I. Stegun. Handbook of Mathematical Functions. 1964: 4.4.45.)
+/// Returns the arc cosine, to 7e-5. (M. Abramowitz, I. Stegun. Handbook of Mathematical Functions. 1964: 4.4.45.)
 HWY_INLINE VF AngleOf(VF cosine) {
   const VF x = hn::Abs(cosine);
   VF sum = hn::Add(hn::Mul(x, All(-0.0187293f)), All(0.0742610f));
@@ -91,8 +91,8 @@ HWY_INLINE Points PointsOf(const OcclusionGrid& grid, const FragmentBatch& batch
   return p;
 }
 
-/// Raises a horizon by the surface at a place on the screen. A horizon is the cosine of its angle from the line of
-/// sight.
+/// Returns the horizon, raised if the surface at the screen position (x, y) rises above it. A horizon is the cosine of
+/// its angle from the line of sight.
 HWY_INLINE VF Raised(const OcclusionGrid& grid, const Points& p, VF x, VF y, VF low, VF horizon) {
   const DF d;
   const DI di;
@@ -139,7 +139,7 @@ HWY_INLINE SliceNormal NormalWithin(const Points& p, const EyeVector& side) {
   return n;
 }
 
-/// Four times the sky between the line of sight and a horizon, whose side is 1 or -1.
+/// Returns four times the sky between the line of sight and a horizon on the given side, 1 or -1.
 HWY_INLINE VF SkyUpTo(VF horizon, float side, const SliceNormal& n) {
   const VF c = Clamped(horizon), s = hn::Mul(All(side), Root(hn::Sub(All(1), hn::Mul(c, c))));
   const VF angle = hn::Mul(All(side), AngleOf(c));
@@ -148,7 +148,7 @@ HWY_INLINE VF SkyUpTo(VF horizon, float side, const SliceNormal& n) {
   return hn::Sub(hn::Add(n.cosine, hn::Mul(All(2), hn::Mul(angle, n.sine))), turned);
 }
 
-/// The free share of the sky.
+/// Returns the share of the sky that nothing hides.
 HWY_INLINE VF FreeSky(const OcclusionGrid& grid, const Points& p) {
   VF sky = All(0), whole = All(0);
   for (const auto& [c, s] : kSlices) {

@@ -14,7 +14,8 @@
 namespace frontmost::shading {
 namespace {
 
-/// The size of a face is about the scan's resolution, so that steps are about 1.
+/// Returns the side length of a face in units of its screen. It follows the scan's resolution, so that steps are about
+/// 1.
 int face_size(const RayCamera& camera) {
   const glm::ivec2 grid = grid_of(camera);
   return std::clamp(std::max(grid.x, grid.y) / 4, 64, 16384);
@@ -38,7 +39,7 @@ std::function<glm::dvec3(int, int)> directions_at(const Model& model, const glm:
   return [directions](int x, int y) { return directions->at(x, y); };
 }
 
-/// The range of distances that a picture of depths maps from bright to dark; both 0 if nothing is hit.
+/// Returns the range of the distances of all hits, or 0 and 0 if nothing is hit.
 DepthRange distance_range(const RangeScan& scan) {
   DepthRange range;
   for (std::size_t i = 0; i < scan.ranges.size(); ++i)
@@ -76,7 +77,8 @@ class ScanPicture {
   }
 
  private:
-  /// Prepares textures and normals for the visible primitives, and the index for see-through ones.
+  /// Prepares the textures and normals of the visible primitives. If primitives are see-through, also prepares the
+  /// index for rays that go on behind them.
   void make_ready(bool wants_normals) {
     PreparedScene& scene = request_.scene;
     const Execution& execution = request_.execution;
@@ -158,7 +160,7 @@ glm::dvec3 ScanDirections::middle(const glm::ivec2& at) const {
   return is_finite(direction) && direction != glm::dvec3(0) ? glm::normalize(direction) : glm::dvec3(0);
 }
 
-/// The step to the neighbour in the direction of `step`, or from the one on the opposite side.
+/// Returns the step to the next pixel in the direction of `step`, or else the step from the pixel on the opposite side.
 glm::dvec3 ScanDirections::step_to(const glm::ivec2& from, const glm::ivec2& step) const {
   const glm::dvec3 here = middle(from), next = middle(from + step);
   if (next != glm::dvec3(0)) return next - here;
@@ -168,8 +170,7 @@ glm::dvec3 ScanDirections::step_to(const glm::ivec2& from, const glm::ivec2& ste
 
 ScanDirections::Steps ScanDirections::steps(int x, int y) const {
   glm::ivec2 at(x, y);
-  // The middle of a border pixel may see nothing although one of its samples does; the next pixel inwards then stands
-  // in.
+  // The middle of a border pixel may have no ray although one of its samples has; then the next pixel inwards is used.
   if (middle(at) == glm::dvec3(0)) at += glm::ivec2(x < grid_.x / 2 ? 1 : -1, y < grid_.y / 2 ? 1 : -1);
   if (middle(at) == glm::dvec3(0)) return {};
   return {step_to(at, {1, 0}), step_to(at, {0, 1})};
@@ -206,7 +207,7 @@ glm::vec2 ScanFaces::screen(int face, const glm::dvec3& direction) const {
 glm::vec2 ScanFaces::screen_step(int face, const glm::dvec3& direction, const glm::dvec3& step) const {
   const FaceAxes axes = axes_of(face);
   const double ahead = glm::dot(direction, axes.ahead);
-  // Derivative of the quotient: the component of the step along the ray has no effect.
+  // This is the derivative of the quotient in screen(). The component of the step along the ray has no effect.
   const glm::dvec3 across = step - direction * (glm::dot(step, axes.ahead) / ahead);
   return glm::vec2(half_size_ / ahead * glm::dvec2(glm::dot(across, axes.right), -glm::dot(across, axes.up)));
 }
@@ -227,7 +228,7 @@ bool ScanTileWork::shade(const TileRectangle& tile) {
 
 void ScanTileWork::find_fragments(const TileRectangle& tile) {
   fragments_.clear();
-  // In blocks: fragments of a batch then lie close together on the surface.
+  // Pixels are visited block by block, so that the fragments of a batch lie close together on the surface.
   constexpr int block = 16;
   for (int left = 0; left < tile.width; left += block)
     for (int y = 0; y < tile.height; ++y)
@@ -262,7 +263,7 @@ void ScanTileWork::add_pixel(const glm::ivec2& at, std::uint32_t pixel) {
       ids[other] = no_primitive;
       ++count;
     }
-    // Opposite rays, in a picture of a few pixels, have no mean direction.
+    // In a picture of a few pixels, rays may be opposite and have no mean direction.
     add(id, pixel, glm::dot(sum, first) > 0 ? sum : first, float(count) / float(samples));
   }
 }
@@ -286,7 +287,7 @@ void ScanTileWork::add_ray(const glm::ivec2& at, int sample, std::uint32_t pixel
 void ScanTileWork::add(PrimitiveId id, std::uint32_t pixel, const glm::dvec3& direction, float weight) {
   const ScanFaces& faces = layer_->faces;
   const int face = ScanFaces::face_of(direction);
-  // Steps are differences of unit vectors.
+  // Steps are differences of unit vectors, so the direction must be one, too.
   const glm::dvec3 unit = glm::normalize(direction);
   fragments_.push_back({id, pixel, true, face, weight, faces.screen(face, unit),
                         faces.screen_step(face, unit, steps_.x), faces.screen_step(face, unit, steps_.y)});

@@ -19,7 +19,7 @@ class ScanDirections {
   explicit ScanDirections(const RayCamera& camera);
 
   [[nodiscard]] glm::dvec3 at(int x, int y, int sample) const { return samples_[std::size_t(sample)](x, y); }
-  /// Differences between the unit vector along a ray and those of the next column and row; zero without neighbours.
+  /// The differences from the unit vector along a ray to those of the next column and row. Zero without neighbours.
   struct Steps {
     glm::dvec3 x{0}, y{0};
   };
@@ -27,7 +27,7 @@ class ScanDirections {
 
  private:
   using At = std::function<glm::dvec3(int, int)>;
-  /// The unit vector through the middle of a pixel; zero beyond the grid.
+  /// Returns the unit vector through the middle of a pixel, or zero if no ray goes there.
   [[nodiscard]] glm::dvec3 middle(const glm::ivec2& at) const;
   [[nodiscard]] glm::dvec3 step_to(const glm::ivec2& from, const glm::ivec2& step) const;
 
@@ -51,11 +51,11 @@ class ScanFaces {
   /// Borrows `store` and `large`, like TriangleSource.
   ScanFaces(const TriangleStore& store, const RayCamera& camera, const BitSet* large, bool has_texcoords);
 
-  /// The face on which a direction lies.
+  /// Returns the face on which a direction lies.
   [[nodiscard]] static int face_of(const glm::dvec3& direction);
   [[nodiscard]] const TriangleSource& source(int face) const { return sources_[std::size_t(face)]; }
   [[nodiscard]] glm::vec2 screen(int face, const glm::dvec3& direction) const;
-  /// The change of the place on the screen for a change of the direction.
+  /// Returns how far the place on the screen moves if the direction changes by `step`.
   [[nodiscard]] glm::vec2 screen_step(int face, const glm::dvec3& direction, const glm::dvec3& step) const;
 
  private:
@@ -68,8 +68,8 @@ struct ScanLayer {
   const ScanFaces& faces;
   const ScanDirections& directions;
   const RangeScan& scan;
-  bool has_textures;        ///< distances between neighbouring rays are needed
-  bool merges;              ///< rays of a pixel that hit the same primitive become one fragment
+  bool has_textures;        ///< whether steps between neighbouring rays are needed
+  bool merges;              ///< whether rays of a pixel that hit the same primitive become one fragment
   const RayIndex* through;  ///< null: nothing is see-through
   const Surfaces& surfaces;
   float opacity;  ///< factor of all opacities
@@ -82,14 +82,15 @@ struct ScanLayer {
 ///                                     shadows are asked for ray by ray
 ///   through glass      a - c - d      fragments one behind another, composited for each ray, nearest first
 ///
-/// Used by one thread, again for every tile and picture.
+/// The object serves one thread, and is used again for every tile and picture.
 class ScanTileWork {
  public:
   ScanTileWork() : pixels_(tile_pixels) {}
-  /// Starts a picture; borrows everything. Precondition of shade().
+  /// Starts a picture, and borrows all arguments. Must come before shade().
   void begin(const ScanLayer& layer, const FragmentShader::Colorist& colorist, Isa isa);
 
-  /// Computes premultiplied means over the samples of each pixel, row by row. \returns false if the tile is empty.
+  /// Computes the premultiplied colour of each pixel, row by row, as a mean over its samples. \returns false if the
+  /// tile is empty.
   bool shade(const TileRectangle& tile);
   [[nodiscard]] const std::vector<glm::vec4>& pixels() const { return pixels_; }
 
@@ -97,7 +98,7 @@ class ScanTileWork {
   struct Fragment {
     PrimitiveId id;
     std::uint32_t pixel;
-    bool begins_ray;  ///< it is the first of its ray
+    bool begins_ray;  ///< whether this is the first fragment of its ray
     int face;
     float weight;
     glm::vec2 screen, step_x, step_y;
@@ -135,10 +136,10 @@ struct RequestFor {
 };
 using ScanRequest = RequestFor<ScanInput>;
 
-/// \throws Error bad_argument for a scan whose planes or ids do not fit, or options out of range.
+/// Checks a request. \throws Error bad_argument for a scan whose planes or ids do not fit, or options out of range.
 void check_scan(const ScanRequest& request);
 
-/// Precondition: check_scan().
+/// Paints the picture of a scan. Precondition: check_scan().
 void paint_scan(const ScanRequest& request, TileCanvas& canvas, const glm::vec4& background);
 
 }  // namespace frontmost::shading

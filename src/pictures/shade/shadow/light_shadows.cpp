@@ -12,7 +12,7 @@ bool is_see_through(const Scene& scene, std::uint32_t material) {
   return material < scene.materials.size() && scene.materials[material].is_see_through();
 }
 
-/// Keeps the elements whose triangle is kept.
+/// Returns the values of the given triangles.
 template <class T>
 std::vector<T> kept(const std::vector<T>& values, const std::vector<std::uint32_t>& triangles) {
   std::vector<T> result;
@@ -53,7 +53,7 @@ bool are_equal(const View& a, const View& b) {
 
 /// Checks the picture that callers made for key_light_view(). \throws Error bad_argument.
 void check_light(const Visible& seen_by_light) {
-  constexpr const char* who = "shade: what the light sees";
+  constexpr const char* who = "shade: seen_by_light";
   check_planes(seen_by_light, who);
   const View& view = seen_by_light.view;
   if (view.width == view.height && view.width >= 4 * ShadowGrid::block && view.width % ShadowGrid::block == 0 &&
@@ -162,7 +162,8 @@ void LightShadows::draw_maps(const ShadedPicture& picture, const Execution& exec
 }
 
 Visible LightShadows::draw_casters(const View& view, Visible&& planes, const Execution& execution) {
-  // The first two pictures, a shadow map and the occlusion of a single picture, are drawn sooner without clusters.
+  // The first two pictures are drawn sooner without clusters. They may be a shadow map and the occlusion of one
+  // picture.
   constexpr int kDirectly = 2;
   const Surfaces& surfaces = casters(execution);
   if (!made_cluster_set(surfaces) && drawn_directly_ < kDirectly) {

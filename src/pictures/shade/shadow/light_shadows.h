@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The shadows of a picture's lights, by the method in LightOptions::shadows.
 //
-//   maps   for the key light, and the first sixteen suns and spots of the file: at most 8 MiB each. Points have none.
-//          A map is drawn again only if the light's view has changed since the picture before.
+//   maps   for the key light, and the first sixteen suns and spots of the file: at most 8 MiB each. Point lights have
+//          none. A map is drawn again only if the light's view has changed since the last picture.
 //   rays   for all lights, through one index
 #pragma once
 
@@ -24,8 +24,8 @@ namespace frontmost::shading {
 /// Whether any material of the scene is see-through.
 [[nodiscard]] bool has_see_through(const Scene& scene);
 
-/// The scene without see-through triangles. Copies the meshes that contain other triangles, and the textures that cut
-/// holes; materials keep their numbers. O(triangles).
+/// Returns the scene without see-through triangles. Copies the meshes that have opaque triangles, and the textures that
+/// cut holes. Materials keep their numbers. O(triangles).
 [[nodiscard]] Scene opaque_part(const Scene& scene);
 
 /// The fragments whose shadow is asked for.
@@ -41,23 +41,23 @@ struct AskedFragments {
 /// material's normals say. A triangle with smooth normals never shadows itself, and its points start on the curved
 /// surface that the normals suggest, so that facets do not show.
 ///
-/// Segments to a lamp end beside the surface on the lamp's side, at a hundred-thousandth of their length and the
-/// rounding error of floats. So no surface casts a shadow on its own points.
+/// A segment from a lamp ends a little off the surface, on the lamp's side, so that no surface casts a shadow on its
+/// own points. The distance is a hundred-thousandth of the segment's length plus the rounding error of floats.
 class RayShadows {
  public:
-  /// The most rays of a picture, and the message of the error if there are more.
+  /// The greatest number of rays of a picture, and the message of the error if there are more.
   struct Limit {
     std::uint64_t most;
     std::string error;
   };
 
-  /// Borrows all but the limit. The index holds the casters. If it has other ids than the shaded surfaces, `knows_ids`
-  /// is false, and triangles are identified by corners, which is slower. `samples` of a pixel are in 1/256 of it.
-  /// `view` is that of the picture, or a pinhole if the picture is a scan.
+  /// Borrows all but the limit. The index is that of the casters. `knows_ids` says that its ids are those of the shaded
+  /// surfaces; otherwise triangles are identified by their corners, which is slower. `samples` are positions in a
+  /// pixel, in 1/256 pixel. `view` is that of the picture, or a pinhole if the picture is a scan.
   RayShadows(const RayIndex& index, bool knows_ids, std::span<const glm::ivec2> samples, const View& view,
              const Execution& execution, Limit limit);
 
-  /// Treats fragments as single points, not as pixels.
+  /// Makes find_light() ask at a single point for each fragment, instead of at the samples of its pixel.
   void ask_at_points() { at_points_ = true; }
 
   /// Fills batch.shadow of the asked fragments: the share of each fragment's samples that the light reaches.
@@ -69,7 +69,8 @@ class RayShadows {
   class LightQuestions;
   class LampQuestions;
 
-  /// Calls questions.add(point, fragment) for every sample of fragments whose triangle `may_face` the light.
+  /// Calls questions.add(point, fragment) for every sample of each asked fragment, unless the fragment's triangle is
+  /// flat and may_face(fragment) is false.
   template <class Questions, class MayFace>
   void ask(Questions& questions, const MayFace& may_face, const AskedFragments& asked) const;
 
@@ -124,7 +125,7 @@ class LightShadows {
   /// Updates an instance that has moved.
   void follow(std::uint32_t instance, const Execution& execution);
 
-  /// Finds the shadows of a picture and its lights, which it borrows.
+  /// Prepares the shadows of a picture by its lights. Borrows both.
   void find(const ShadedPicture& picture, const PictureLights& lights, const Execution& execution);
   /// Calls RayShadows::ask_at_points(), for shadows by rays.
   void ask_at_points() {
@@ -136,13 +137,13 @@ class LightShadows {
   /// Fills batch.shadow of the asked fragments: the share of the light that arrives. Precondition: has_shadows().
   void find_arriving(std::size_t light, const AskedFragments& asked, Isa isa) const;
 
-  /// The surfaces, or their opaque part. The first call makes the opaque part if some material is see-through.
+  /// Returns the surfaces, or their opaque part. The first call makes the opaque part if some material is see-through.
   [[nodiscard]] const Surfaces& casters(const Execution& execution);
-  /// The casters that a view sees; reuses `planes`, of any size.
+  /// Draws the casters in a view. Reuses the memory of `planes`, whatever its size.
   [[nodiscard]] Visible draw_casters(const View& view, Visible&& planes, const Execution& execution);
 
  private:
-  /// The map of one light; its address does not change.
+  /// The map of one light. Its address does not change.
   struct DrawnMap {
     ShadowMap map;
     Visible planes;          ///< planes of map.view(), if drawn here
@@ -150,7 +151,8 @@ class LightShadows {
   };
 
   void draw_maps(const ShadedPicture& picture, const Execution& execution);
-  /// The number of the map of a light of the file, by its place in the scene; none beyond the first sixteen.
+  /// Returns the number of the map of a light of the file, or none beyond the first sixteen lights with maps. The
+  /// number depends on the light's place in the scene only.
   [[nodiscard]] std::optional<std::size_t> map_number(const Light& source) const;
   const ShadowMap* draw_map(std::size_t number, const std::optional<View>& light, const ShadedPicture& picture,
                             const Execution& execution);
@@ -162,7 +164,7 @@ class LightShadows {
 
   const PictureLights* lights_ = nullptr;
   ZBuffer drawer_;
-  int drawn_directly_ = 0;                    ///< pictures of casters without clusters
+  int drawn_directly_ = 0;                    ///< number of pictures of casters that were drawn without clusters
   std::vector<DrawnMap> maps_;                ///< the key light's first, then those of the file
   std::vector<const ShadowMap*> light_maps_;  ///< by light of the picture; null: no shadows
   std::optional<RayIndex> index_;

@@ -32,7 +32,7 @@ RayShadows::RayShadows(const RayIndex& index, bool knows_ids, std::span<const gl
       crowd_(execution, kMostOfCrowd + kMostOfTriangle * index.triangle_count(), "shade"),
       too_many_(std::move(limit.error)) {}
 
-/// Points that are asked about together, and their fragments.
+/// Points whose rays to a far light are traced together, and their fragments.
 class RayShadows::LightQuestions {
  public:
   LightQuestions(const RayShadows& shadows, const glm::vec3& to_light, FragmentBatch& batch)
@@ -44,7 +44,7 @@ class RayShadows::LightQuestions {
     if (++count_ == points_.size()) ask();
   }
 
-  /// Answers count whole samples, which floats add exactly.
+  /// Traces the rays, and adds the number of lit points to each fragment. Floats add whole numbers exactly.
   void ask() {
     shadows_.count(count_);
     std::array<std::uint8_t, kAtOnce> is_lit;
@@ -67,8 +67,8 @@ class RayShadows::LightQuestions {
   std::array<int, kAtOnce> fragments_;
 };
 
-/// Questions about segments from a lamp. The nearest hit says whether the point is the first thing that the lamp
-/// lights.
+/// Points whose segments from a lamp are traced together. A point is lit if its segment first hits the point's own
+/// triangle, or nothing.
 class RayShadows::LampQuestions {
  public:
   LampQuestions(const RayShadows& shadows, const Lamp& lamp, FragmentBatch& batch)
@@ -100,8 +100,8 @@ class RayShadows::LampQuestions {
 
  private:
   static constexpr std::size_t kAtOnce = 256;
-  static constexpr std::uint64_t kStepsOfTriangle = 64;  ///< in steps of single rays, which take as long as one exact
-                                                         ///< decision
+  static constexpr std::uint64_t kStepsOfTriangle = 64;  ///< number of steps of single rays that take as long as one
+                                                         ///< exact decision
 
   [[nodiscard]] glm::vec3 beside(const glm::dvec3& place, const glm::dvec3& normal) const {
     const glm::dvec3 to_lamp = glm::dvec3(lamp_) - place, size = glm::max(glm::abs(place), glm::abs(glm::dvec3(lamp_)));

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points are mapped to texels a vector at a time. Most are nearer to the light than all texels around them, or farther;
-// two numbers per block tell. For the others a window of 8 x 8 texels is compared, eight columns side by side. Sums are
-// made row by row and added in a fixed order, so that every instruction set gives the same bits.
+// Points are mapped to texels, a vector of points at a time. Most points are nearer to the light than all texels around
+// them, or farther, which two numbers per block tell. For the other points a window of 8 x 8 texels is compared, eight
+// columns side by side. Sums are made row by row and added in a fixed order, so that every instruction set gives the
+// same bits.
 
 #include "shade/shadow/shadow_map.h"
 
@@ -26,7 +27,7 @@ namespace {
 constexpr int kTaps = ShadowGrid::taps, kBlock = ShadowGrid::block;
 static_assert(kTaps == 8 && ShadowGrid::window >= kTaps + kBlock);
 constexpr float kHalf = 0.5f * kTaps;
-constexpr float kToFirst = kHalf - 0.5f;  ///< distance from the filter's first texel, without its fraction
+constexpr float kToFirst = kHalf - 0.5f;  ///< the filter of a point at x begins at texel int(x - kToFirst)
 
 /// Points in the map: texel coordinates, and keys with the bias.
 struct MapPoints {
@@ -39,7 +40,8 @@ HWY_INLINE VF DotOf(const glm::vec3& v, const float* x, const float* y, const fl
   return hn::Add(hn::Add(xx, yy), hn::Mul(hn::Set(d, v.z), hn::LoadU(d, z)));
 }
 
-/// Within the filter's width a slanted surface comes nearer to the light by its slope, which must not count as shadow.
+/// Returns the bias of a point. Within the filter's width a slanted surface comes nearer to the light, which must not
+/// count as shadow.
 HWY_INLINE VF BiasOf(const ShadowGrid& grid, VF cosine, VF sine) {
   const DF d;
   const VF steepest = hn::Set(d, 8.0f), one = hn::Set(d, 1.0f);
@@ -77,7 +79,8 @@ void FindPlacesOfSun(const ShadowGrid& grid, const ShadowPoints& points, MapPoin
   }
 }
 
-/// The slope of a surface to a lamp's rays is the cosine to the ray, times the ray's length along the axis.
+/// Finds the places of points in the map of a spot. The slope for the bias uses the cosine between normal and ray,
+/// times the ray's length per unit along the axis.
 void FindPlacesOfSpot(const ShadowGrid& grid, const ShadowPoints& points, MapPoints& out) {
   const DF d;
   const VF one = hn::Set(d, 1.0f), nowhere = hn::Set(d, -1.0f);
@@ -101,10 +104,10 @@ void FindPlacesOfSpot(const ShadowGrid& grid, const ShadowPoints& points, MapPoi
 
 /// Bit masks of a vector of points.
 struct LightOfBlocks {
-  std::uint64_t lit, partly;  ///< wholly lit, and undecided without the filter; others are dark
+  std::uint64_t lit, partly;  ///< points that are wholly lit, and points that need the filter; all others are dark
 };
 
-/// The blocks' answers for the points from i on. Points whose filter reaches out of the map are lit.
+/// Decides the points from i on by their blocks. Points whose filter reaches out of the map are lit.
 HWY_INLINE LightOfBlocks AskBlocks(const ShadowGrid& grid, const MapPoints& points, int i) {
   const DF d;
   const DI di;
@@ -124,7 +127,7 @@ HWY_INLINE LightOfBlocks AskBlocks(const ShadowGrid& grid, const MapPoints& poin
           BitsOf(d, hn::AndNot(hn::Or(is_before, is_behind), is_within))};
 }
 
-/// One bit for each of `count` answers.
+/// Returns one bit for each of `count` answers.
 HWY_INLINE std::uint64_t BitsAt(const bool* answers, int count) {
   std::uint64_t bits = 0;
   for (int i = 0; i < count; ++i) bits |= std::uint64_t(answers[i]) << i;
@@ -135,8 +138,8 @@ HWY_INLINE std::uint64_t BitsAt(const bool* answers, int count) {
 using DColumns = hn::CappedTag<float, kTaps>;
 using VColumns = hn::Vec<DColumns>;
 
-/// Weights of a tent filter, so that edges fade without steps, for the texels from `first` on and a point at `at`. The
-/// weights at whole texels always sum to kHalf * kHalf.
+/// Returns the weights of the texels from `first` on for a point at `at`. A tent filter makes edges fade without steps.
+/// Its weights at whole texels always sum to kHalf * kHalf.
 HWY_INLINE VColumns WeightsFrom(int first, float at) {
   const DColumns d;
   const auto texel = hn::Add(hn::Iota(d, 0.0f), hn::Set(d, float(first) + 0.5f));

@@ -29,13 +29,15 @@ struct LightExtent {
   [[nodiscard]] bool is_empty() const { return !(low.x <= high.x); }
 };
 
-/// The size at which a texel is about as small as a pixel; small pictures would not show more.
+/// Returns the side length, in texels, of a map whose texels are about as small as the pixels of the picture. The
+/// picture would not show smaller texels.
 int texels_for(const View& picture) {
   const int wanted = std::max(picture.width, picture.height) * 8 / 5;
   return std::clamp((wanted + 63) / 64 * 64, kLeastSize, kMostSize);
 }
 
-/// The extent of the visible points, in the axes of `light` (x, y across; z towards the light), from the eye.
+/// Returns the extent of the visible points, relative to the eye, in the axes of the light: x and y across it, z
+/// towards it.
 LightExtent extent_of_visible(const SeenPoints& visible, const glm::dmat3& light_axes, const Execution& execution) {
   const glm::dmat3 light_from_world = glm::transpose(light_axes);
   const int rows = (visible.view.height + kStride - 1) / kStride;
@@ -61,8 +63,8 @@ LightExtent extent_of_box(const Box& box, const glm::dvec3& zero, const glm::dma
   return extent;
 }
 
-/// Two directions across `to_light`, and `to_light`. They are upright in the picture; if the light is straight above or
-/// below, they follow the view direction.
+/// Returns two axes across `to_light`, and `to_light` itself. The two are upright in the picture; if the light is
+/// straight above or below, they follow the view direction.
 glm::dmat3 axes_of_light(const glm::dvec3& to_light, const View& view) {
   constexpr double parallel = 1e-12;
   const glm::dvec3 upright = glm::cross(view.up(), to_light);
@@ -71,7 +73,8 @@ glm::dmat3 axes_of_light(const glm::dvec3& to_light, const View& view) {
   return {side, glm::cross(to_light, side), to_light};
 }
 
-/// The window of the light's view: around the visible points, clipped to the scene, with a margin for the filter.
+/// Returns the window of the light's view: around the visible points, clipped to the scene, with a margin for the
+/// filter.
 LightExtent window_of(const LightExtent& seen, const LightExtent& all, int texels) {
   LightExtent window = all;
   for (int k = 0; k < 2; ++k) {
@@ -90,12 +93,13 @@ LightExtent window_of(const LightExtent& seen, const LightExtent& all, int texel
   return window;
 }
 
-/// One-sided triangles let light through from behind where the eye sees through them; other culling is the eye's alone.
+/// Returns the culling of the light's view. Light passes through one-sided triangles from behind if the eye sees
+/// through them. Other culling is for the eye alone.
 Culling culling_of_light(const View& picture) {
   return picture.culling == Culling::material ? Culling::material : Culling::none;
 }
 
-/// The view of a window whose coordinates are relative to `zero`.
+/// Returns the view of a window whose coordinates are relative to `zero`.
 View view_of_window(const LightExtent& window, const glm::dmat3& axes, const glm::dvec3& zero, const View& picture) {
   View view;
   view.width = view.height = texels_for(picture);
@@ -107,14 +111,15 @@ View view_of_window(const LightExtent& window, const glm::dmat3& axes, const glm
   return view;
 }
 
-/// The least number of the form (8 + k) * 2^n that is not below a positive value: at most an eighth more.
+/// Returns the least number of the form (8 + k) * 2^n that is not below a positive value. It is at most an eighth
+/// greater.
 double rounded_up(double value) {
   int exponent = 0;
   const double mantissa = std::frexp(value, &exponent);  // from a half to below one
   return std::ldexp(std::ceil(16 * mantissa) / 16, exponent);
 }
 
-/// Enlarges a window, so that its side is one of a few sizes and its centre is on a grid of an eighth of the side.
+/// Enlarges a window, so that its side length is one of a few and its centre is on a grid of an eighth of that length.
 void snap(LightExtent& window) {
   constexpr double steps = 8;
   const double side = rounded_up((window.high.x - window.low.x) * steps / (steps - 1)), step = side / steps;
@@ -129,7 +134,8 @@ struct KeyRange {
   float least, greatest;
 };
 
-/// Replaces each number of a square by the least or greatest (`choose`) of itself and the two after it along both axes.
+/// Replaces each number of a square by the least or the greatest of the 3 x 3 numbers that begin with it. `choose`
+/// returns the lesser or the greater of two.
 template <class Choose>
 void spread(float* numbers, std::size_t size, const Choose& choose) {
   static_assert(ShadowGrid::window == 3 * ShadowGrid::block);
@@ -144,7 +150,7 @@ void spread(float* numbers, std::size_t size, const Choose& choose) {
         numbers[y * size + x] = choose(numbers[y * size + x], numbers[next * size + x]);
 }
 
-/// The range of a block of keys whose rows are `size` apart.
+/// Returns the range of a block of keys whose rows are `size` apart.
 KeyRange range_of_block(const float* keys, std::size_t size) {
   constexpr std::size_t block = ShadowGrid::block;
   float least[block], greatest[block];
@@ -177,7 +183,7 @@ std::optional<View> view_of_sun(const SeenPoints& visible, const Box& bounds, co
   LightExtent seen = extent_of_visible(visible, axes, execution);
   if (seen.is_empty() || bounds.is_empty()) return std::nullopt;
   const int texels = texels_for(visible.view);
-  // Relative to a point that does not move with the camera.
+  // The window is relative to a point that does not move with the camera.
   const glm::dvec3 zero(bounds.centre()), eye = glm::transpose(axes) * (visible.view.eye() - zero);
   seen.low += eye;
   seen.high += eye;
@@ -193,7 +199,7 @@ std::optional<View> view_of_spot(const View& picture, const Box& bounds, const L
   view.width = view.height = texels_for(picture);
   view.culling = culling_of_light(picture);
   view.world_from_eye = spot.world_from_light;
-  // Rounded to a float, because the last bit of a tangent differs between machines.
+  // The tangent is rounded to a float, because its last bit differs between machines.
   const double half = double(float(std::tan(std::min(spot.outer_cone, widest)))) * (1 + 2 * kSpareTexels / view.width);
   const double near = std::max(1e-4 * double(bounds.diagonal()), 1e-30);
   view.projection = make_frustum(-half * near, half * near, -half * near, half * near,
@@ -202,7 +208,7 @@ std::optional<View> view_of_spot(const View& picture, const Box& bounds, const L
 }
 
 void ShadowMap::draw(const Visible& seen_by_light, const Execution& execution) {
-  clear();  // after an error everything is lit
+  clear();  // if the rest throws, everything is lit
   light_ = seen_by_light.view;
   constexpr std::size_t block = ShadowGrid::block;
   const auto size = std::size_t(light_.width), blocks = size / block;
@@ -229,7 +235,7 @@ void ShadowMap::measure_from(const glm::dvec3& eye) {
   const glm::dmat3 axes(light_.world_from_eye);
   const Projection& window = light_.projection;
   const glm::dvec3 from_light = eye - light_.eye();
-  const double texel = (window.right - window.left) / light_.width;  // of a spot: at a depth of 1
+  const double texel = (window.right - window.left) / light_.width;  // of a spot, at a depth of 1
   double depth = 1;
   grid_.is_spot = !window.orthographic;
   grid_.to_light = glm::vec3(axes[2]);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The views of lights: surfaces visible in such a view are lit, others are in shadow.
+// The views of lights. Surfaces that are visible in the view of a light are lit by it, others are in its shadow.
 //
 //   key light   along its direction, at the visible points; it moves with the camera
-//   sun         the same, but its window is larger and on a fixed grid: it stays while the camera moves a little
+//   sun         likewise, but with a larger window on a fixed grid: it stays while the camera moves a little
 //   spot        from the lamp along its cone; the same for every camera
 #pragma once
 
@@ -27,8 +27,8 @@ class SeenPoints {
   /// For a scan: a pinhole in the scan's pose with as many pixels; its projection means nothing.
   const View view;
 
-  /// Calls visit(point) for the first sample of every `stride`-th pixel of a row; `point` is in world axes from the
-  /// eye. Leaves out points that are too far away for sums of their coordinates.
+  /// Calls visit(point) for the first sample of every `stride`-th pixel of a row. `point` is in world axes, relative to
+  /// the eye. Leaves out points so far away that sums of their coordinates could overflow.
   template <class Visit>
   void visit_row(int y, int stride, const Visit& visit) const {
     constexpr double farthest = 1e30;
@@ -58,37 +58,39 @@ class SeenPoints {
   ScreenRays rays_;
 };
 
-/// The view of the key light: along -to_light at the points of `visible`, with room for everything within `bounds` that
-/// may stand between. None if nothing is visible, or nothing can cast a shadow.
+/// Returns the view of the key light. It looks along -to_light at the points of `visible`, with room for everything
+/// within `bounds` that may stand between. Returns none if nothing is visible, or nothing can cast a shadow.
 [[nodiscard]] std::optional<View> view_of_light(const SeenPoints& visible, const Box& bounds,
                                                 const glm::dvec3& to_light, const Execution& execution);
 
-/// The view of a sun of the file, likewise.
+/// Returns view_of_light() for a sun of the file, with the window on a fixed grid.
 [[nodiscard]] std::optional<View> view_of_sun(const SeenPoints& visible, const Box& bounds, const Light& sun,
                                               const Execution& execution);
 
-/// The view of a spot of the file, for pictures of this size. It reaches at most 75 degrees from the axis; points
-/// beyond have no shadow. None if nothing can cast a shadow.
+/// Returns the view of a spot of the file, for pictures of this size, or none if nothing can cast a shadow. The view
+/// reaches at most 75 degrees from the axis; points beyond have no shadow.
 [[nodiscard]] std::optional<View> view_of_spot(const View& picture, const Box& bounds, const Light& spot);
 
 /// The data of a map in the form that the kernel reads.
 struct ShadowGrid {
   static constexpr int taps = 8;     ///< taps of the filter along each axis
-  static constexpr int block = 4;    ///< texels per side that share a number of `nearest` and `farthest`
-  static constexpr int window = 12;  ///< texels per side from which such a number is computed
+  static constexpr int block = 4;    ///< side length of a block in texels; `nearest` and `farthest` have a number for
+                                     ///< each
+  static constexpr int window = 12;  ///< side length in texels of the square that such a number summarizes
 
   int size = 0;                 ///< texels per side, a multiple of `block`; 0: everything is lit
   const float* keys = nullptr;  ///< row by row; greater is nearer to the light
-  /// The greatest and the least key in the window that begins at each block, by rows of blocks. A filter that begins in
-  /// the block stays within the window, and most points are before all of the window, or behind.
+  /// The greatest and the least key in each block's window, by rows of blocks. The window begins at the block, and
+  /// contains every filter that begins in the block. Most points need no filter, because they are nearer than all keys
+  /// of the window, or farther.
   const float *nearest = nullptr, *farthest = nullptr;
   glm::vec3 to_light{0};                     ///< for spots, opposite to their axis
-  glm::vec3 texel_x{0}, texel_y{0}, key{0};  ///< changes per unit step in the world
-  glm::vec3 at_eye{0};                       ///< texel x, y and key at the eye
+  glm::vec3 texel_x{0}, texel_y{0}, key{0};  ///< change of texel x, texel y and key per unit step in the world
+  glm::vec3 at_eye{0};                       ///< texel x, texel y and key at the eye
   float key_bias = 0, key_slope_bias = 0;
-  // For spots, all three are still to be divided by `key`, which is depth / near; biases are fractions of the key.
+  // For spots, the texels are still to be divided by the key, which is depth / near. Biases are fractions of the key.
   bool is_spot = false;
-  glm::vec3 lamp{0};  ///< from the eye
+  glm::vec3 lamp{0};  ///< position relative to the eye
 };
 
 /// Points in world axes from the eye, and normals of the flat surface there. Arrays have room for loops over whole
@@ -104,13 +106,13 @@ struct ShadowPoints {
 /// Maps drawn one after another reuse the memory.
 class ShadowMap {
  public:
-  /// Takes the light's view as drawn. Borrows the keys.
+  /// Makes the map from the view of the light as drawn. Borrows the keys.
   void draw(const Visible& seen_by_light, const Execution& execution);
-  /// Sets the origin of points. Precondition: something was drawn.
+  /// Sets the eye, to which points are relative. Precondition: something was drawn.
   void measure_from(const glm::dvec3& eye);
   /// Makes everything lit.
   void clear() { grid_.size = 0; }
-  /// The view that was drawn.
+  /// Returns the view that was drawn.
   [[nodiscard]] const View& view() const { return light_; }
   [[nodiscard]] const ShadowGrid& grid() const { return grid_; }
 

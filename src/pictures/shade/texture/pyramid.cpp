@@ -10,7 +10,7 @@
 namespace frontmost::shading {
 namespace {
 
-/// The light of each byte.
+/// Returns the linear light of each byte.
 const float* table_of(Encoding encoding) {
   static const auto tables = [] {
     std::array<std::array<float, 256>, 2> values{};
@@ -25,8 +25,8 @@ const float* table_of(Encoding encoding) {
 
 std::uint8_t linear_byte(float value) { return std::uint8_t(std::min(value, 1.0f) * 255.0f + 0.5f); }
 
-/// The texels of the finer level that form one of the coarser level along one axis: two, or three if the size is odd,
-/// so that every texel has the same weight.
+/// The texels of the finer level that form a texel of the coarser level, along one axis. There are two, or three if the
+/// finer size is odd. Over all coarser texels, every finer one has the same weight.
 struct FinerTexels {
   int first, count;
   float weight[3];
@@ -38,7 +38,7 @@ FinerTexels finer_texels(int i, int fine, int coarse) {
   return {2 * i, 3, {float(coarse - i) * total, float(coarse) * total, float(i + 1) * total}};
 }
 
-/// Two adjacent texels in memory order.
+/// Returns two adjacent texels in memory order.
 std::uint64_t pair_at(const glm::u8vec4* texels) {
   std::uint64_t pair;
   std::memcpy(&pair, texels, sizeof pair);
@@ -68,9 +68,10 @@ struct Halving {
   [[nodiscard]] const glm::u8vec4& at(int x, int y) const {
     return texels[std::size_t(y) * std::size_t(width) + std::size_t(x)];
   }
-  // For texels [begin, end) of a row; four texels of the finer level form each.
+  // The functions below are for texels [begin, end) of a row, each of which is formed by four texels of the finer
+  // level.
 
-  /// True for most textures.
+  /// Whether all of the finer texels are opaque. This is so in most textures.
   [[nodiscard]] bool is_opaque(int begin, int end, int y) const {
     const glm::u8vec4 *upper = &at(0, 2 * y), *lower = &at(0, 2 * y + 1);
     std::uint8_t all = 0xFF;
@@ -103,7 +104,7 @@ struct Halving {
       out[x] = {mean(0), mean(1), mean(2), 0xFF};
     }
   }
-  /// A mean weighted by alpha, so that colours of transparent texels do not bleed into their neighbours.
+  /// Returns a mean weighted by alpha, so that colours of transparent texels do not bleed into their neighbours.
   [[nodiscard]] glm::u8vec4 weighted_mean(int x, int y) const {
     const FinerTexels tx = finer_texels(x, width, std::max(1, width / 2)),
                       ty = finer_texels(y, height, std::max(1, height / 2));

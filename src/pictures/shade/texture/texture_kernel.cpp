@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Texels are read one by one: a vector holds the four channels of one or more texels of two levels. A load brings all
-// channels of a texel; a gather over many fragments would bring one channel each. Addresses are computed for many taps
-// at a time.
+// Texels are read one by one, because one load brings all channels of a texel, whereas a gather over many fragments
+// would bring one channel of each. A vector holds the four channels of one or more texels of two levels. Addresses are
+// computed for many taps at a time.
 
 #include "shade/texture/texture_sampler.h"
 
@@ -24,7 +24,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using namespace frontmost::HWY_NAMESPACE;
 namespace {
 
-/// log2 of positive numbers to 0.01, by operations that every machine rounds alike.
+/// Returns log2 of positive numbers to 0.01, by operations that every machine rounds alike.
 HWY_INLINE VF Log2(VF value) {
   const DF d;
   const DI di;
@@ -50,7 +50,7 @@ HWY_INLINE UV Turned(const TexcoordTransform& transform, const Lane2& lanes, int
           hn::Add(hn::Mul(All(across.y), x), hn::Mul(All(down.y), y))};
 }
 
-/// Places of fragments in a texture, the longest axis of their footprints, and its length.
+/// For each fragment: its place in a texture, the longest axis of its footprint, the level, and the number of taps.
 struct Footprints {
   float u[sampled_at_once], v[sampled_at_once];
   float axis_u[sampled_at_once], axis_v[sampled_at_once];
@@ -118,7 +118,7 @@ void SpreadTaps(const TapRequest& request, const Footprints& footprints, Taps& t
   taps.taps = n;
 }
 
-/// u, v, u, v of as many taps as fit.
+/// A vector of u, v, u, v and so on, for as many taps as fit.
 using DPlaces = hn::CappedTag<float, 16>;
 using VPlaces = hn::Vec<DPlaces>;
 using MPlaces = hn::Mask<DPlaces>;
@@ -138,7 +138,7 @@ class WrappingLanes {
   float lanes_[18];
 };
 
-/// Vector form of wrapped() in texture_lookup.h.
+/// Returns what wrapped() of texture_lookup.h returns, for a vector of coordinates.
 struct Wrapping {
   MPlaces repeats, mirrors;
 
@@ -154,7 +154,7 @@ struct Wrapping {
   }
 };
 
-/// Vector form of texel_pair() in texture_lookup.h, or of texel_of() for textures without filter.
+/// Finds the texels of all taps, as texel_pair() of texture_lookup.h does, or texel_of() for textures without filter.
 void PlaceTaps(const Texture& texture, Taps& taps) {
   const DPlaces d;
   const hn::RebindToSigned<DPlaces> di;
@@ -193,7 +193,7 @@ using DSum = hn::CappedTag<float, kLanes / 2>;
 using VSum = hn::Vec<DSum>;
 constexpr int kSumLanes = int(hn::MaxLanes(DSum())), kSums = kLanes / 2 / kSumLanes;
 
-/// The lanes, of a vector that begins at lane `first`, where `pattern` is 1.
+/// Returns the lanes where `pattern` is 1, in a vector that begins at lane `first`.
 template <class D>
 HWY_INLINE hn::Mask<D> LanesOf(D d, const float* pattern, int first) {
   return hn::Gt(hn::LoadU(d, pattern + first), hn::Zero(d));
@@ -201,13 +201,14 @@ HWY_INLINE hn::Mask<D> LanesOf(D d, const float* pattern, int first) {
 constexpr float kAlpha[kLanes] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
 constexpr float kFiner[kLanes] = {1, 1, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 0};
 
-/// Converts bytes to linear light: sRGB except for alpha, or linear values in proportion.
+/// Converts bytes to linear light. sRGB bytes follow the curve, except for alpha; linear bytes are divided by 255.
 template <Encoding encoding>
 HWY_INLINE VPart Light(VPart bytes, MPart is_alpha) {
   const DPart d;
   const auto x = hn::Mul(bytes, hn::Set(d, 1.0f / 255));
   if constexpr (encoding == Encoding::linear) return x;
-  // Fitted to the 245 bytes above the straight part, in steps of a byte. Pairs of terms are independent of each other.
+  // The polynomial is fitted to the 245 bytes above the straight part, in steps of a byte. Its pairs of terms do not
+  // depend on each other.
   const auto pair = [&](float constant, float slope) {
     return hn::Add(hn::Mul(x, hn::Set(d, slope)), hn::Set(d, constant));
   };
@@ -224,7 +225,8 @@ HWY_INLINE V Mix(V a, V b, V t) {
   return hn::Add(a, hn::Mul(hn::Sub(b, a), t));
 }
 
-/// Two adjacent texels in the upper row around a tap, and the two below; one level in the lower half.
+/// The four texels around a tap: two adjacent ones in the upper row, and the two below them. A single level fills the
+/// lower half of each number.
 struct Quad {
   std::uint64_t upper[2], lower[2];
 };
@@ -246,7 +248,7 @@ HWY_INLINE Quad Joined(const Quad& fine, const Quad& coarse) {
           {fine.lower[0] | coarse.lower[0] << 32, fine.lower[1] | coarse.lower[1] << 32}};
 }
 
-/// The part of sixteen bytes that begins at byte `first`.
+/// Returns the floats of sixteen bytes from byte `first` on, as many as a vector has.
 template <class D>
 HWY_INLINE hn::Vec<D> PartOf(D d, const std::uint64_t (&bytes)[2], int first) {
   constexpr std::size_t lanes = hn::MaxLanes(D());

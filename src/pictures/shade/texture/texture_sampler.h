@@ -42,7 +42,8 @@ class Pyramid {
   [[nodiscard]] const Texture& texture() const { return *texture_; }
   [[nodiscard]] Encoding encoding() const { return encoding_; }
   [[nodiscard]] const std::vector<Level>& levels() const { return levels_; }
-  /// Width and height of a level and of the next one (or again this one), as floats to multiply coordinates with.
+  /// Returns width and height of a level and of the next one (or again this one), as floats to multiply coordinates
+  /// with.
   [[nodiscard]] const std::array<float, 4>& sizes_from(int level) const { return sizes_[std::size_t(level)]; }
 
  private:
@@ -65,8 +66,8 @@ struct TextureSlot {
   std::uint32_t set = 0;  ///< set of texture coordinates
 };
 
-/// Look-ups in textures of one size. Each tap has four numbers of a kind: for u and v of its finer level, and of the
-/// next.
+/// The taps in textures of one size. Each array holds four numbers for a tap: for u and v of its finer level, and for u
+/// and v of the next level.
 struct Taps {
   struct alignas(64) Fours {
     float values[4 * most_taps * sampled_at_once];
@@ -76,10 +77,10 @@ struct Taps {
   };
   int fragments = 0, taps = 0;
   std::uint8_t count[sampled_at_once];  ///< number of taps of each fragment
-  std::uint8_t level[sampled_at_once];  ///< the finer one
+  std::uint8_t level[sampled_at_once];  ///< number of the finer level of each fragment
   float blend[sampled_at_once];         ///< weight of the next level
-  Fours place;                          ///< texture coordinates; later the fraction between the first and the second
-                                        ///< texel
+  Fours place;                          ///< first the texture coordinates, later the fraction between the first and the
+                                        ///< second texel
   Fours size;                           ///< size of the levels, in texels
   FourTexels first, second;             ///< texels on either side
 };
@@ -100,13 +101,13 @@ class TextureSampler {
   /// Sets the places of later look-ups: those of the fragments [begin, end), at most sampled_at_once. Borrows
   /// `texcoord`.
   void begin(const TexcoordLanes& texcoord, int begin, int end);
-  /// Sets out[i - begin] for each fragment i to linear RGBA: bilinear in the two levels nearest to the footprint,
-  /// blended. Textures marked `nearest` give one texel, empty ones white. Bytes become light by a polynomial with an
-  /// error of 1/50 step.
+  /// Sets out[i - begin] for each fragment i to linear RGBA, blended from bilinear values in the two levels nearest to
+  /// the footprint. Textures marked `nearest` give one texel, and empty ones white. Bytes become light by a polynomial
+  /// with an error of 1/50 step.
   void sample(const Pyramid& pyramid, const TexcoordTransform& transform, glm::vec4* out);
 
  private:
-  /// Everything that determines the taps for given coordinates; the texture's content does not.
+  /// The values that determine the taps for given coordinates. The texture's content does not.
   struct Places {
     int width, height;
     Texture::Wrap wrap_u, wrap_v;
@@ -118,7 +119,7 @@ class TextureSampler {
   Isa isa_;
   const TexcoordLanes* texcoord_ = nullptr;
   int begin_ = 0, end_ = 0;
-  std::optional<Places> places_;  ///< for which the taps were computed
+  std::optional<Places> places_;  ///< the request for which the taps were computed
   Taps taps_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG in: images, as write.cpp makes them or from other programs, and textures. libpng's classic interface reads them;
-// the simplified one would apply gamma chunks, which glTF says to ignore.
+// Reads PNG files: textures, and images that write.cpp or other programs have made. Uses libpng's classic interface,
+// because the simplified one would apply gamma chunks, which glTF says to ignore.
 #include <png.h>
 
 #include <bit>
@@ -17,7 +17,7 @@
 namespace frontmost::detail {
 namespace {
 
-/// Chunks that libpng must not see: none of them changes a pixel here, and compressed ones may be huge.
+/// Chunks that libpng must not see. None of them changes a pixel here, and compressed ones may be huge.
 constexpr png_byte unread_chunks[] = "iCCP\0zTXt\0iTXt\0eXIf\0sPLT\0hIST\0gAMA\0cHRM\0sRGB";
 constexpr png_byte text_chunk[] = "tEXt";
 
@@ -37,7 +37,7 @@ bool chunks_fit(std::span<const std::byte> bytes) {
 }
 
 /// libpng reports errors by longjmp, which must not pass over C++ objects. The functions that call setjmp (read_header,
-/// read_rows) hold none; their data lies in the reader.
+/// read_rows) have no such objects; their data lies in the reader.
 class PngReader {
  public:
   /// Pixel types that read() can convert any file to. 16-bit values are in the machine's byte order.
@@ -50,7 +50,7 @@ class PngReader {
       if (!read_header(keeps_texts)) fail();
       const std::uint64_t width = png_get_image_width(png_, info_), height = png_get_image_height(png_, info_);
       bits_ = png_get_bit_depth(png_, info_);
-      // Deflate makes at most 258 bytes of two bits.
+      // Deflate makes at most 258 bytes out of two bits.
       check_image_size(name_, width, height, bytes.size(), 258 * 4 * 8.0 / (bits_ * png_get_channels(png_, info_)));
       width_ = int(width);
       height_ = int(height);
@@ -69,7 +69,7 @@ class PngReader {
   /// Whether the file has one channel and no palette.
   [[nodiscard]] bool is_grey() const { return png_get_color_type(png_, info_) == PNG_COLOR_TYPE_GRAY; }
 
-  /// Text chunks before the pixels, by keyword.
+  /// Returns the texts of the chunks before the pixels, by keyword.
   [[nodiscard]] std::map<std::string, std::string> texts() const {
     std::map<std::string, std::string> result;
     png_textp texts = nullptr;
@@ -112,7 +112,7 @@ class PngReader {
     info_ = png_create_info_struct(png_);
     if (info_ == nullptr) png_error(png_, "out of memory");
     png_set_read_fn(png_, this, read_bytes);
-    // All sizes pass here; check_image_size() reports the limit in the same words for all formats.
+    // libpng accepts all sizes, because check_image_size() reports the limit in the same words for all formats.
     png_set_user_limits(png_, 0x7FFFFFFF, 0x7FFFFFFF);
     png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, unread_chunks, int(sizeof unread_chunks / 5));
     if (!keeps_texts) png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, text_chunk, 1);
@@ -160,7 +160,8 @@ T* add_channel(Image& image, const std::string& name) {
   return std::get<Buffer<T>>(image.channels.back().values).data();
 }
 
-/// Colours as load_image() returns them: linear, premultiplied. `linear` turns a stored value into a linear one.
+/// Adds channels of colours as load_image() returns them: linear and premultiplied. `linear` turns a stored value into
+/// a linear one.
 template <class Value, class Linear>
 void unpack_colors(const Buffer<Value>& pixels, Image& image, Linear&& linear) {
   constexpr float most = float(std::numeric_limits<Value>::max());
@@ -174,7 +175,7 @@ void unpack_colors(const Buffer<Value>& pixels, Image& image, Linear&& linear) {
   }
 }
 
-/// Directions as write.cpp writes them.
+/// Adds channels of directions from the values that write.cpp stores.
 template <class Value>
 void unpack_directions(const Buffer<Value>& pixels, Image& image) {
   constexpr int middle = (std::numeric_limits<Value>::max() + 1) / 2;
@@ -223,7 +224,7 @@ double number(const Texts& texts, const char* key, const std::string& name) {
   return value;
 }
 
-/// A depth or id map, as described by the file's text chunks.
+/// Reads a depth or id map, which the file's text chunks describe.
 void load_map(PngReader& reader, const Texts& texts, const std::string& name, Image& image) {
   const std::string& channel = texts.at(png_channel_key);
   const bool ids = texts.count(png_ids_key) != 0;

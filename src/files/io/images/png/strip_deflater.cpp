@@ -35,7 +35,7 @@ std::span<const std::uint8_t> deflate_piece(z_stream& stream, std::span<const st
   return {out.data(), stream.total_out};
 }
 
-/// A stream of zlib without a header.
+/// Prepares a deflate stream without zlib's header.
 void init_deflate(z_stream& stream, int level, int strategy) {
   constexpr int raw_window_bits = -15, memory = 8;
   if (::deflateInit2(&stream, level, Z_DEFLATED, raw_window_bits, memory, strategy) != Z_OK) throw std::bad_alloc();
@@ -83,11 +83,13 @@ namespace {
 constexpr std::uint32_t deflate_level = 1;
 constexpr std::size_t level_memory_size = ISAL_DEF_LVL1_DEFAULT;
 
-/// Size below which zlib compresses. In about one process of a hundred, ISA-L 2.30 packs small pictures into different,
-/// though valid, bytes. Differences occurred up to 2 kB, and in none of 8400 pieces from 3 kB on.
+/// Number of bytes below which a piece is compressed by zlib instead. In about one process of a hundred, ISA-L 2.30
+/// packs small pictures into different, though valid, bytes. Differences occurred up to 2 kB, and in none of 8400
+/// pieces from 3 kB on.
 constexpr std::size_t small_piece = 8192;
 
-/// Bytes that do not shrink are stored in blocks of 65535 bytes, with five more bytes each.
+/// Returns the most bytes that `raw` bytes can become. Bytes that do not shrink are stored in blocks of 65535, each
+/// with five more bytes.
 std::size_t worst_case(std::size_t raw) { return raw + 5 * (raw / 65535 + 1); }
 
 /// ISA-L's assembly leaves the upper halves of the vector registers in use. Until they are cleared, any SSE code of the

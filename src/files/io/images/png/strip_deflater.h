@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Services of a compression library for PNG files: deflate in pieces, and two checksums.
+// The parts of a compression library that PNG files need: deflate in pieces, and two checksums.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ class StripDeflater {
   StripDeflater& operator=(const StripDeflater&) = delete;
 
   /// Compresses 1 to `most_bytes` bytes. The result ends on a byte and refers to nothing before it, so that pieces can
-  /// be joined; `last` ends the stream. The result lies in this object until the next call.
+  /// be joined. `last` ends the stream. The result lies in this object until the next call.
   [[nodiscard]] std::span<const std::uint8_t> compress(std::span<const std::uint8_t> raw, bool last);
 
  private:
@@ -28,10 +28,10 @@ class StripDeflater {
   std::unique_ptr<State> state_;
 };
 
-/// CRC-32 of PNG's chunks.
+/// Returns the CRC-32 that PNG's chunks need.
 [[nodiscard]] std::uint32_t crc32_of(std::span<const std::uint8_t> bytes);
 
-/// Adler-32 of the zlib stream.
+/// Returns the Adler-32 that the zlib stream needs.
 [[nodiscard]] std::uint32_t adler32_of(std::span<const std::uint8_t> bytes);
 
 }  // namespace frontmost::detail

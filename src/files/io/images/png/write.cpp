@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG out: an image's channels as colours, directions, a depth map or an id map; bitmaps; textures of model files.
+// Writes PNG files: the channels of an image as colours, directions, a depth map or an id map; bitmaps; and textures of
+// model files.
 //
 // Rows are filtered and compressed in parallel. Each strip of rows is compressed by itself and ends on a byte, so that
 // strips join to the one zlib stream that PNG requires.
@@ -42,7 +43,8 @@ struct PngContents {
 
 using ByteVector = std::vector<std::uint8_t>;
 
-/// Filtered bytes of a strip: enough to make the cost of starting it small, few enough to keep all threads busy.
+/// Number of filtered bytes in a strip: enough to make the cost of its start small, few enough to keep all threads
+/// busy.
 constexpr std::size_t strip_bytes = std::size_t(1) << 18;
 
 enum class Filter : std::uint8_t { sub = 1, up = 2 };
@@ -67,7 +69,7 @@ std::string_view as_text(const ByteVector& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Signature and all chunks before the pixels.
+/// Returns the signature and all chunks before the pixels.
 ByteVector head(const PngContents& contents) {
   ByteVector header;
   append_word(header, std::uint32_t(contents.width));
@@ -94,8 +96,8 @@ struct Workspace {
       : raw(rows * (row_size + 1)), row(row_size), above(row_size), deflater(raw.size()) {}
 };
 
-// Rows have `size` bytes, and a pixel has `pixel` bytes. Rows are pointers instead of spans, whose ends would be
-// reloaded after each written byte.
+// Rows have `size` bytes, and a pixel has `pixel` bytes. Rows are passed as pointers, because the end of a span would
+// be reloaded after each written byte.
 
 void filter_sub(const std::uint8_t* row, std::size_t pixel, std::size_t size, std::uint8_t* out) {
   std::copy_n(row, pixel, out);
@@ -106,8 +108,9 @@ void filter_up(const std::uint8_t* row, const std::uint8_t* above, std::size_t s
   for (std::size_t i = 0; i < size; ++i) out[i] = std::uint8_t(row[i] - above[i]);
 }
 
-/// Rows of a strip after filtering: Up, except for the first row, which must not depend on another strip. Paeth's
-/// filter, even without branches, makes saving 10 to 50 % slower, and pictures 7 % smaller to 4 % larger.
+/// Returns the filtered rows of a strip. The filter is Up, except for the first row, which must not depend on another
+/// strip. Paeth's filter, even without branches, makes saving 10 to 50 % slower, and pictures 7 % smaller to 4 %
+/// larger.
 std::span<const std::uint8_t> filtered_rows(const PngContents& contents, int first, int end, Workspace& space) {
   const std::size_t pixel = contents.pixel_bytes();
   const std::size_t size = std::size_t(contents.width) * pixel;
@@ -152,7 +155,7 @@ Strip make_strip(const PngContents& contents, int first, int end, Workspace& spa
   return strip;
 }
 
-/// The end of the zlib stream and of the file.
+/// Returns the end of the zlib stream and of the file.
 ByteVector tail(const std::vector<Strip>& strips) {
   uLong checksum = 1;  // Adler-32 of no bytes
   for (const Strip& strip : strips) checksum = ::adler32_combine(checksum, strip.checksum, z_off_t(strip.raw_size));
@@ -189,7 +192,7 @@ void store_big_endian(std::uint8_t* place, unsigned value) {
   place[1] = std::uint8_t(value);
 }
 
-/// `number` with all digits that a double has.
+/// Returns `number` with all digits that a double has.
 std::string digits(double number) { return general_text(number, 17); }
 
 PngContents colors(PictureRows rows) {
@@ -212,7 +215,7 @@ PngContents deep_colors(const ColorPlanes& planes) {
   return contents;
 }
 
-/// Directions: zero is exactly the middle value, and 1 is the greatest value.
+/// Stores directions. Zero becomes exactly the middle value, and 1 the greatest value.
 PngContents directions(const Image& image, int bits) {
   PngContents contents;
   contents.bits = bits;
@@ -232,7 +235,7 @@ PngContents directions(const Image& image, int bits) {
   return contents;
 }
 
-/// stored = depth * scale + offset, rounded; 0 if the pixel shows nothing.
+/// How depths are stored: depth * scale + offset, rounded, or 0 if the pixel shows nothing.
 struct DepthMapping {
   double scale = 1, offset = 0;
 
@@ -252,7 +255,8 @@ DepthMapping fitted_mapping(const Buffer<float>& depths) {
   return {scale, 1 - double(low) * scale};
 }
 
-/// A fixed scale promises what the numbers mean, so depths beyond it are an error and are not clipped.
+/// Returns the mapping with a scale that the caller chose. The scale promises what the numbers mean, so depths beyond
+/// it are an error and are not clipped.
 DepthMapping fixed_mapping(const Channel& channel, double scale, const std::string& name) {
   if (!(scale > 0) || !std::isfinite(scale))
     throw Error(ErrorCode::bad_argument, name, "", "the depth scale must be a positive number");
@@ -307,7 +311,7 @@ PngContents id_map(const Image& image, const std::string& name) {
   return contents;
 }
 
-/// Luminance from 0 to 1, for masks.
+/// Stores luminance from 0 to 1 as grey, for masks.
 PngContents grey_picture(const Image& image) {
   PngContents contents;
   contents.color = Color::grey;

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double quarter_turn = 0.5 * std::numbers::pi;
 
-/// A camera looks along its node's -z, with y up. Cameras have no scale, so the axes are made orthonormal again.
+/// Returns the pose of a camera, which looks along its node's -z with y up, or nothing if the node has no such axes.
+/// Cameras have no scale, so the axes are made orthonormal again.
 std::optional<glm::dmat4> rigid(const glm::dmat4& world) {
   const glm::dvec3 back(world[2]), up(world[1]);
   // The viewing direction is kept exactly and up is adjusted, because a sheared parent leaves them at an angle.
@@ -28,7 +29,7 @@ std::optional<double> positive(const JsonValue& json, const char* key) {
   return value > 0 ? std::optional(value) : std::nullopt;
 }
 
-/// The lens of a camera. Empty for unknown types, and for sizes that are not positive.
+/// Returns the lens of a camera, or nothing for unknown types and for sizes that are not positive.
 std::optional<Camera> read_camera(const JsonValue& json) {
   Camera camera;
   camera.name = json.name();
@@ -78,8 +79,8 @@ void read_cones(const JsonValue& json, Light& light, std::vector<std::string>& w
   light.inner_cone = std::clamp(inner, 0.0, light.outer_cone);
 }
 
-/// Reads one light. Values out of range cause a warning and become the nearest sensible value. Empty for unknown kinds
-/// and for kinds whose light cannot be computed.
+/// Reads one light. Values out of range cause a warning and become the nearest sensible value. Returns nothing for
+/// unknown kinds and for kinds whose light cannot be computed.
 std::optional<Light> read_light(const JsonValue& json, std::vector<std::string>& warnings) {
   const auto leave_out = [&](const std::string& reason) {
     warnings.push_back(json.place() + ": " + reason + ", the light is left out");
@@ -107,8 +108,8 @@ std::optional<Light> read_light(const JsonValue& json, std::vector<std::string>&
 /// Whether the light's kind uses a direction.
 bool has_direction(const Light& light) { return light.kind != Light::Kind::point; }
 
-/// A rigid transform at the node's place whose -z is the node's direction of -z, whatever its scale or shear. Empty if
-/// the node has no such direction.
+/// Returns a rigid transform at the node's place, or nothing if the light needs a direction and the node has none. Its
+/// -z is the node's direction of -z, whatever the node's scale or shear.
 std::optional<glm::dmat4> placement(const Light& light, const glm::dmat4& world) {
   const double length = glm::length(glm::dvec3(world[2]));
   if (!has_direction(light) || !(length > 0 && std::isfinite(length))) {

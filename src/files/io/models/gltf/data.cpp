@@ -3,7 +3,7 @@
 //
 //   buffer      bytes of the file, of a URI or of the GLB's second chunk
 //   view        a part of a buffer
-//   accessor    elements in a view: offset + (count - 1) * stride + size of an element must not exceed its length
+//   accessor    elements in a view: offset + (count - 1) * stride + size of an element must be within the view's length
 //
 // All numbers come from the file and may be anything. So the checks use differences and quotients of checked numbers
 // instead of sums and products, which could overflow. Later reads need no check.
@@ -23,7 +23,7 @@ namespace {
 constexpr const char* no_contents = "its buffer has no contents in this file";
 constexpr std::uint32_t component_codes[] = {5120, 5121, 5122, 5123, 5125, 5126};
 
-/// Empty for codes that glTF does not define.
+/// Returns the component type, or nothing for codes that glTF does not define.
 std::optional<Component> component_of(const JsonValue& json) {
   const std::uint64_t code = json.to_unsigned();
   for (const std::uint32_t known : component_codes)
@@ -45,10 +45,10 @@ const Shape* shape_of(const JsonValue& json) {
   return nullptr;
 }
 
-/// Layout of the components of one element. Columns of matrices start at multiples of four, and so do packed matrices;
-/// the last column has no padding behind it.
+/// Layout of the components of one element. Columns of matrices start at multiples of four bytes, and so do packed
+/// matrices; the last column has no padding behind it.
 struct RowLayout {
-  std::size_t column, column_stride;  ///< bytes of a column, and from one to the next
+  std::size_t column, column_stride;  ///< bytes of a column, and bytes from one column to the next
   int columns;
 
   RowLayout(const Shape& shape, Component component)
@@ -59,7 +59,8 @@ struct RowLayout {
   [[nodiscard]] std::size_t size() const { return stride() - column_stride + column; }
 };
 
-/// Whether `count` elements, `stride` apart, lie within `length` bytes from `offset` on. Nothing overflows.
+/// Whether `count` elements, `stride` apart, lie within `length` bytes from `offset` on. Correct for all numbers,
+/// because nothing overflows.
 bool fits(std::uint64_t offset, std::uint64_t count, std::uint64_t stride, std::uint64_t element,
           std::uint64_t length) {
   if (count == 0) return offset <= length;
@@ -68,14 +69,14 @@ bool fits(std::uint64_t offset, std::uint64_t count, std::uint64_t stride, std::
   return count - 1 <= (length - offset - element) / stride;
 }
 
-/// Refuses bytes that are not within their buffer.
+/// Throws an error for bytes that are not within their buffer.
 void check_bytes(const JsonValue& json, std::uint64_t offset, std::uint64_t size, const ByteExtent& buffer) {
   if (!fits(offset, size, 1, 1, buffer.length))
     json.fail("bytes " + std::to_string(offset) + " + " + std::to_string(size) +
               " are not within the buffer, which has " + std::to_string(buffer.length));
 }
 
-/// A copy of elements: address and stride of the components, and the target.
+/// A copy of elements: the address and stride of the source, the number of components, and the target.
 template <class Out>
 struct Copy {
   const std::byte* from;
@@ -106,8 +107,8 @@ void with_type(Component component, const Use& use) {
   }
 }
 
-/// Integers become floats by the format's equations for normalised values. The format forbids normalised floats and
-/// normalised 32-bit integers; if they occur, their values are not scaled.
+/// Copies numbers as floats. Normalised integers are mapped by the format's equations. The format forbids normalised
+/// floats and normalised 32-bit integers; if they occur, their values are not scaled.
 void convert_columns(const Accessor& accessor, const Copy<float>& copy) {
   with_type(accessor.component, [&](auto zero) {
     using T = decltype(zero);
@@ -126,7 +127,7 @@ void convert_columns(const Accessor& accessor, const Copy<std::uint32_t>& copy) 
   });
 }
 
-/// Copies column by column, because matrices may have padding between columns.
+/// Copies elements column by column, because matrices may have padding between columns.
 template <class Out>
 void convert(const Accessor& accessor, const Copy<Out>& elements) {
   for (int first = 0; first < elements.components; first += accessor.rows) {
@@ -138,7 +139,7 @@ void convert(const Accessor& accessor, const Copy<Out>& elements) {
   }
 }
 
-/// The first replacement whose element is not before `element`.
+/// Returns the number of the first replacement whose element is not before `element`.
 std::size_t lower_bound(const Sparse& sparse, std::size_t element) {
   std::size_t low = 0, high = sparse.count;
   while (low < high) {
@@ -243,7 +244,7 @@ void Data::read_buffer(const JsonValue& json, const Container& container) {
   buffers_.push_back(buffer);
 }
 
-/// Opens each file once, however many buffers name it.
+/// Returns the contents of a file. Each file is opened once, however many buffers name it.
 Bytes Data::file_bytes(const std::string& path, const ModelSource& source) {
   auto found = files_.find(path);
   if (found == files_.end()) found = files_.emplace(path, source.open(path, max_file_bytes)).first;
@@ -306,7 +307,7 @@ void Data::read_accessor(const JsonValue& json) {
   accessors_.push_back(accessor);
 }
 
-/// Sets bytes and stride. Precondition: the stride is that of packed elements.
+/// Sets the accessor's bytes and stride. Precondition: the stride is that of packed elements.
 void Data::find_elements(const JsonValue& json, Accessor& accessor) const {
   const std::uint32_t id = json.index_or_none("bufferView", views_.size());
   if (id == no_index) return;
@@ -326,8 +327,8 @@ void Data::find_elements(const JsonValue& json, Accessor& accessor) const {
     accessor.unreadable = no_contents;
 }
 
-/// The bytes of packed elements in the view that `json` names, from the first one on. Empty if the view has no
-/// contents.
+/// Returns the bytes of packed elements in the view that `json` names, from the first one on, or no bytes if the view
+/// has no contents.
 Bytes Data::packed(const JsonValue& json, std::size_t count, std::size_t stride, std::size_t size) const {
   const ByteExtent& view = views_[json.require("bufferView").to_index(views_.size())];
   const std::uint64_t offset = json.unsigned_or("byteOffset", 0);

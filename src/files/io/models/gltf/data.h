@@ -5,7 +5,7 @@
 //   GLB   | "glTF" | 2 | length |   | size | "JSON" | text ... |   | size | "BIN" | bytes ... |   | others
 //           12 bytes                  8 bytes                        8 bytes; may be missing         passed over
 //
-// Arrays may be compressed. Each decoder is an optional part of a build; io/absent.cpp stands for one that is left out.
+// Arrays may be compressed. Each decoder is an optional part of a build; io/absent.cpp replaces it if it is left out.
 //
 //   bufferViews[3]             --EXT_meshopt_compression----> bytes of the view
 //   meshes[0].primitives[0]    --KHR_draco_mesh_compression-> corners and attributes, as further accessors
@@ -34,7 +34,7 @@ struct Container {
 [[nodiscard]] bool is_data_uri(std::string_view uri);
 /// Decodes "data:[TYPE][;base64],...". `place` is the value that holds the URI.
 [[nodiscard]] std::vector<std::byte> decode_data_uri(std::string_view uri, const JsonValue& place);
-/// Decodes %20 and the like; text that is no valid escape stays.
+/// Decodes %20 and the like. Text that is no valid escape stays.
 [[nodiscard]] std::string percent_decode(std::string_view text);
 
 enum class Component : std::uint16_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
@@ -63,9 +63,9 @@ struct Accessor {
   int rows = 0;  ///< components in a column; less than `components` for matrices
   bool normalized = false;
   Bytes bytes;                    ///< from the first element on; empty: all elements are zero
-  std::size_t stride = 0;         ///< from one element to the next
+  std::size_t stride = 0;         ///< bytes from one element to the next
   std::size_t size = 0;           ///< bytes of an element, from its first component to the end of its last
-  std::size_t column_stride = 0;  ///< from one column of an element to the next
+  std::size_t column_stride = 0;  ///< bytes from one column of an element to the next
   std::optional<Sparse> sparse;
   const char* unreadable = nullptr;  ///< the reason if its elements cannot be read, else null
 };
@@ -83,11 +83,11 @@ class Data {
   [[nodiscard]] std::size_t view_count() const { return views_.size(); }
   [[nodiscard]] std::size_t accessor_count() const { return accessors_.size(); }
   [[nodiscard]] const Accessor& accessor(std::uint32_t i) const { return accessors_[i]; }
-  /// The accessor that `user` names. \throws Error if it cannot be read.
+  /// Returns the number of the accessor that `user` names. \throws Error if it cannot be read.
   [[nodiscard]] std::uint32_t readable_accessor(const JsonValue& user) const;
-  /// The bytes of a view, which must have contents. `user` is the place that refers to the view.
+  /// Returns the bytes of a view, which must have contents. `user` is the place that refers to the view.
   [[nodiscard]] Bytes view_bytes(std::uint32_t i, const JsonValue& user) const;
-  /// Size of the file and of the files that it names, in bytes.
+  /// Returns the size of the file and of the files that it names, in bytes.
   [[nodiscard]] std::uint64_t byte_count() const;
 
   /// Keeps decoded bytes. \returns a view of them, valid during the object's lifetime.
@@ -127,7 +127,7 @@ void read_integers(const Accessor& accessor, ElementRange range, int width, std:
 /// \throws Error file_malformed, unsupported.
 [[nodiscard]] std::vector<std::byte> decode_meshopt(const JsonValue& json, Bytes compressed, std::uint64_t length);
 
-/// Accessors of a primitive's decoded arrays.
+/// The numbers of the accessors of a primitive's decoded arrays.
 struct DecodedPrimitive {
   std::uint32_t indices = no_index;
   std::map<std::string, std::uint32_t> attributes;
@@ -137,8 +137,8 @@ struct DecodedPrimitive {
 class DracoPrimitives {
  public:
   explicit DracoPrimitives(Data& data) : data_(data), budget_(data.byte_count()) {}
-  /// Empty if the primitive is not compressed or if this build has no Draco. \throws Error file_malformed, unsupported,
-  /// limit_exceeded.
+  /// Returns the decoded arrays, or nothing if the primitive is not compressed or if this build has no Draco. \throws
+  /// Error file_malformed, unsupported, limit_exceeded.
   [[nodiscard]] std::optional<DecodedPrimitive> decode(const JsonValue& primitive);
 
  private:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Primitives compressed by Draco; their decoded arrays become accessors of the file.
+// Primitives compressed by Draco. Their decoded arrays become accessors of the file.
 //
 // Draco's decoder checks what it reads, but allocates memory by the numbers in its data: a stream of 20 bytes may state
-// a billion triangles, or an attribute of 255 components. So classes derived from its decoders stop before that:
+// a billion triangles, or an attribute of 255 components. So classes derived from its decoders check these numbers:
 //
 //   header -> connectivity: counts of faces and seams -> attributes: their components -> values
 //             ^ checked                                  ^ checked
@@ -17,8 +17,8 @@
 namespace frontmost::gltf {
 namespace {
 
-/// Cost of a compressed byte. Many overlapping buffer views may name the same bytes, so decoding is charged as well: in
-/// all, 4 times the file and 16 MiB may be decoded.
+/// Cost of a compressed byte. Many overlapping buffer views may name the same bytes, so their decoding is charged, too.
+/// In all, 4 times the size of the file and 16 MiB may be decoded.
 constexpr std::size_t cost_of_compressed_byte = 16;
 
 /// A decoded array, packed.
@@ -38,7 +38,7 @@ struct DecodedArray {
 // Estimates of the decoder's memory, from its sources: tables with three corners a face, another table for each set of
 // attributes with seams of its own, and values with their quantised copies.
 constexpr std::uint64_t bytes_of_face = 128, bytes_of_seams = 24, bytes_of_value = 32;
-// Honest data need some 200 bytes of memory a compressed byte; regular grids need more. The base is that of Budget.
+// Honest data need some 200 bytes of memory per compressed byte; regular grids need more. The base is that of Budget.
 constexpr std::uint64_t working_base = std::uint64_t(1) << 28, working_factor = 1024;
 
 class WorkingMemory {
@@ -66,7 +66,7 @@ class BoundedDecoder : public Decoder {
  protected:
   bool DecodeAllAttributes() override {
     const draco::PointCloud& cloud = *this->point_cloud();
-    std::uint64_t size = bytes_of_value * (1 + std::uint64_t(this->num_attributes_decoders()));  // there may be none
+    std::uint64_t size = bytes_of_value * (1 + std::uint64_t(this->num_attributes_decoders()));  // perhaps 0
     for (int i = 0; i < cloud.num_attributes(); ++i)
       size += bytes_of_value + 3 * std::uint64_t(cloud.attribute(i)->byte_stride());
     return memory_.take(cloud.num_points(), size) && Decoder::DecodeAllAttributes();
@@ -104,7 +104,7 @@ std::optional<Component> component_of(draco::DataType type) {
   }
 }
 
-/// The values of all vertices. Empty if glTF lacks the type, or if vertices have no value.
+/// Returns the values of all vertices, or nothing if glTF lacks their type or a vertex has no value.
 std::optional<DecodedArray> attribute_of(const draco::PointAttribute& from, std::uint32_t vertex_count) {
   const std::optional<Component> component = component_of(from.data_type());
   if (!component) return std::nullopt;
@@ -120,7 +120,7 @@ std::optional<DecodedArray> attribute_of(const draco::PointAttribute& from, std:
   return to;
 }
 
-/// Three vertices for each triangle, 32 bits.
+/// Returns three vertex numbers of 32 bits for each triangle.
 DecodedArray corners_of(const draco::Mesh& from) {
   DecodedArray to(Component::u32, 1, 3 * std::size_t(from.num_faces()));
   for (std::uint32_t i = 0; i < from.num_faces(); ++i) {

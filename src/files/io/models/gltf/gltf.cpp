@@ -31,7 +31,7 @@ std::uint32_t little_endian(Bytes bytes, std::size_t at) {
   return read_value<std::uint32_t>(bytes.data() + at, Endian::little);
 }
 
-/// The bytes within the length that the header states.
+/// Returns the bytes within the length that the header states.
 Bytes checked_body(Bytes bytes, const ModelSource& source) {
   if (bytes.size() < header_size) source.fail("GLB header", "the file ends within it");
   const std::uint32_t version = little_endian(bytes, 4), length = little_endian(bytes, 8);
@@ -94,7 +94,7 @@ std::vector<std::byte> decode_base64(std::string_view text, const JsonValue& pla
   return out;
 }
 
-/// Extensions that are implemented, or that change nothing that is visible or coloured here.
+/// Extensions that are implemented, or that change no shape or colour here.
 constexpr std::string_view supported_extensions[] = {
     "KHR_texture_transform",
     "KHR_materials_unlit",
@@ -178,7 +178,7 @@ void check_extensions(const JsonValue& root, std::vector<std::string>& warnings)
     warnings.push_back("extensionsUsed: " + name + " is not supported, and ignored");
 }
 
-/// Each element costs some hundred bytes of memory, even an empty one ("{}").
+/// Limits the lengths of the lists, because each element costs some hundred bytes of memory, even an empty one ("{}").
 void check_counts(const JsonValue& root) {
   const auto check = [](const std::optional<JsonValue>& array) {
     if (array && array->size() > max_objects)
@@ -209,8 +209,8 @@ Scene read_scene(const Container& container, const ModelSource& source) {
   place_meshes(root, data, plans, tree, scene);
   place_cameras(root, tree, scene);
   place_lights(root, tree, scene);
-  // Textures come last, and only those that materials use: decoding is the dearest step, and futile if another step
-  // fails.
+  // Textures come last, because decoding is the most expensive step, and futile if another step fails. Only textures
+  // that materials use are decoded.
   textures.load(scene);
   return scene;
 }

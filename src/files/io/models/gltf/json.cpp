@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A library parses the document. Its recursion and memory grow with the text, so depth and number of values are counted
-// first.
+// A library parses the document. The library's recursion and memory grow with the text, so the depth and the number of
+// values are counted first.
 #include "io/models/gltf/json.h"
 
 #include <cmath>

@@ -41,42 +41,42 @@ class JsonValue {
   [[nodiscard]] const ModelSource& source() const { return *source_; }
   [[noreturn]] void fail(const std::string& reason) const;
 
-  /// A member of an object, or nothing.
+  /// Returns a member of an object, or nothing.
   [[nodiscard]] std::optional<JsonValue> find(const char* key) const;
   [[nodiscard]] JsonValue require(const char* key) const;
-  /// The object `extensions.NAME`, or nothing.
+  /// Returns the object `extensions.NAME`, or nothing.
   [[nodiscard]] std::optional<JsonValue> extension(const char* name) const;
-  /// The names of the members. \throws Error unless this is an object.
+  /// Returns the names of the members. \throws Error unless this is an object.
   [[nodiscard]] std::vector<std::string> keys() const;
   [[nodiscard]] bool is_string() const;
   [[nodiscard]] bool is_number() const;
-  /// The number of elements. \throws Error unless this is an array.
+  /// Returns the number of elements. \throws Error unless this is an array.
   [[nodiscard]] std::size_t size() const;
   [[nodiscard]] JsonValue operator[](std::size_t i) const;
 
   [[nodiscard]] bool to_bool() const;
   [[nodiscard]] double to_number() const;
   [[nodiscard]] std::string to_string() const;
-  /// A whole number, which may be written as 3.0. \throws Error for negative numbers.
+  /// Returns a whole number, which may be written as 3.0. \throws Error for negative numbers.
   [[nodiscard]] std::uint64_t to_unsigned() const;
-  /// An index. \throws Error unless it is below `count`.
+  /// Returns an index. \throws Error unless it is below `count`.
   [[nodiscard]] std::uint32_t to_index(std::size_t count) const;
   /// Reads an array of exactly out.size() numbers.
   void to_numbers(std::span<double> out) const;
 
-  // Members with a default value if absent.
+  // The functions below read a member, and return a default value if it is absent.
   [[nodiscard]] bool bool_or(const char* key, bool absent) const { return read_or(key, absent, &JsonValue::to_bool); }
   [[nodiscard]] double number_or(const char* key, double absent) const {
     return read_or(key, absent, &JsonValue::to_number);
   }
   [[nodiscard]] std::string string_or_empty(const char* key) const { return read_or(key, {}, &JsonValue::to_string); }
-  /// The member "name"; empty if absent.
+  /// Returns the member "name", or an empty text if it is absent.
   [[nodiscard]] std::string name() const { return name_of(string_or_empty("name")); }
   [[nodiscard]] std::uint64_t unsigned_or(const char* key, std::uint64_t absent) const {
     return read_or(key, absent, &JsonValue::to_unsigned);
   }
   [[nodiscard]] std::uint32_t index_or_none(const char* key, std::size_t count) const;
-  /// \returns false, and leaves `out` unchanged, if the member is absent.
+  /// Reads a member that is an array of numbers. \returns false, and leaves `out` unchanged, if the member is absent.
   bool read_numbers(const char* key, std::span<double> out) const;
   /// Reads a vector of floats or doubles. Leaves `out` unchanged if the member is absent.
   template <class Vector>
@@ -86,7 +86,7 @@ class JsonValue {
     for (int k = 0; k < Vector::length(); ++k) out[k] = typename Vector::value_type(numbers[k]);
   }
 
-  // Members that are arrays; an absent one counts as empty.
+  // The functions below read a member that is an array. An absent array counts as empty.
   [[nodiscard]] std::size_t count(const char* key) const;
   /// Calls read(JsonValue) with each element.
   template <class Read>

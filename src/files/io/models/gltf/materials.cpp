@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads the materials: metallic-roughness, and the layers of KHR_materials_ior, _specular, _clearcoat, _sheen,
-// _transmission, _volume and _pbrSpecularGlossiness (Khronos Group). Textures that cannot be used keep a mark, so that
-// TextureTable::load() knows which materials have to do without them.
+// _transmission, _volume and _pbrSpecularGlossiness (Khronos Group). A use of a texture that cannot be used is marked,
+// so that TextureTable::load() knows which materials have to do without the texture.
 #include "io/models/gltf/materials.h"
 
 #include <algorithm>
@@ -16,7 +16,8 @@ class UseReader {
  public:
   UseReader(TextureTable& textures, std::vector<std::string>& warnings) : textures_(textures), warnings_(warnings) {}
 
-  /// The use in the member `key` of `json`; unset if absent. If it cannot be used, lost_texture with a warning.
+  /// Returns the use of a texture in the member `key` of `json`, which is unset if the member is absent. If the texture
+  /// cannot be used, adds a warning, and the use is of lost_texture.
   [[nodiscard]] TextureUse read(const JsonValue& json, const char* key) {
     TextureUse use;
     const std::optional<JsonValue> member = json.find(key);
@@ -131,7 +132,7 @@ class MaterialReader {
   ///
   ///   specular, glossiness  -->  a mirror (ior 0) of the specular colour over a matt base: no metal at all
   void read_layers(const JsonValue& json, Material& material) {
-    // Specular-glossiness comes first, because its ior and specular give way to extensions of these names.
+    // Specular-glossiness comes first, because the extensions _ior and _specular override its ior and specular.
     if (const auto layer = json.extension("KHR_materials_pbrSpecularGlossiness"))
       read_specular_glossiness(*layer, material);
     if (const auto layer = json.extension("KHR_materials_ior")) material.ior = float(layer->number_or("ior", 1.5));
@@ -142,7 +143,7 @@ class MaterialReader {
     if (const auto layer = json.extension("KHR_materials_volume")) read_volume(*layer, material);
   }
 
-  /// Glossiness by texture is lost, because it lies in the alpha channel of a colour texture.
+  /// Reads specular-glossiness. Glossiness in a texture is lost, because it is the alpha channel of a colour texture.
   void read_specular_glossiness(const JsonValue& json, Material& material) {
     material.base_color = glm::vec4(1);
     json.read_vector("diffuseFactor", material.base_color);

@@ -21,8 +21,8 @@ class TextureTable {
  public:
   TextureTable(const JsonValue& root, const Data& data) : root_(root), data_(data) {}
 
-  /// The scene's number for a texture of the file; textures with equal image and sampler share one. Returns
-  /// lost_texture, and adds a warning, if its image cannot be read.
+  /// Returns the scene's number for a texture of the file. Textures with equal image and sampler share one. Returns
+  /// lost_texture, and adds a warning, if the image cannot be read.
   [[nodiscard]] std::uint32_t intern(const JsonValue& index, std::vector<std::string>& warnings);
 
   /// Decodes in parallel and fills scene.textures. Images that cannot be decoded cause warnings, and their materials do

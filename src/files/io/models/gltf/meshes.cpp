@@ -17,19 +17,19 @@ namespace {
 /// A run of a mesh's vertices that come from one vertex set.
 struct VertexRun {
   const VertexSet* vertices = nullptr;
-  ElementRange range;     ///< range of the accessors' elements; empty: no triangle uses them
+  ElementRange range;     ///< range of the accessors' elements; empty if no triangle uses the run
   std::size_t first = 0;  ///< first vertex in the mesh
-  std::string place;      ///< place of the first primitive that uses them
+  std::string place;      ///< place of the first primitive that uses the run
 };
 
-/// The values of a set of texture coordinates. Creates the set if absent.
+/// Returns the values of a set of texture coordinates. Creates the set if it is absent.
 std::vector<glm::vec2>& texcoords_of(Mesh& mesh, std::size_t set) {
   if (set == 0) return mesh.texcoords.values;
   if (mesh.further_texcoords.size() < set) mesh.further_texcoords.resize(set);
   return mesh.further_texcoords[set - 1].values;
 }
 
-/// values[i] += weight * displacement i.
+/// Adds `weight` times the displacements of a morph target to the values of a run.
 template <class V>
 void add(const Data& data, const VertexRun& block, std::uint32_t accessor, double weight, std::vector<V>& values) {
   // A target may displace what the mesh lacks, for example normals; such displacements are ignored.
@@ -64,8 +64,8 @@ class Influences {
     }
   }
 
-  /// The weighted mean of the joints' matrices. Weights stored as bytes may not sum to exactly one, so the sum is
-  /// divided out.
+  /// Returns the weighted mean of the joints' matrices. Weights stored as bytes may not sum to exactly one, so the sum
+  /// is divided out.
   [[nodiscard]] glm::dmat4 matrix(std::size_t vertex, std::span<const glm::dmat4> joints) const {
     glm::dmat4 sum(0.0);
     double total = 0;
@@ -84,7 +84,7 @@ class Influences {
   std::vector<float> weights_;
 };
 
-/// The inverse transpose up to a positive factor. It also exists for singular matrices.
+/// Returns the inverse transpose up to a positive factor. It also exists for singular matrices.
 glm::dmat3 normal_matrix(const glm::dmat3& m) {
   const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
   return glm::dot(m[0], cofactors[0]) < 0 ? -cofactors : cofactors;
@@ -136,7 +136,8 @@ class MeshBuilder {
     std::size_t triangle = 0;
     for (const Run& run : runs_) {
       const VertexRun& block = blocks_[run.block];
-      // The shift wraps around if the mesh's vertices start before the accessor's; the sum is right nevertheless.
+      // The shift wraps around if the run starts earlier in the mesh than in the accessor; the sum is right
+      // nevertheless.
       const auto shift = std::uint32_t(block.first - block.range.first);
       for (const std::size_t end = triangle + run.triangle_count; triangle < end; ++triangle)
         mesh_.triangles[triangle] += shift;
@@ -176,8 +177,8 @@ class MeshBuilder {
       std::iota(out, out + range.count, std::uint32_t(range.first));
   }
 
-  /// Takes corners in the order that the format defines for each mode, which keeps the winding of a strip's odd
-  /// triangles.
+  /// Makes triangles with the corners in the order that the format defines for each mode. This order keeps the winding
+  /// of a strip's odd triangles.
   void read_strip_or_fan(const Primitive& primitive, std::size_t corner_count, std::span<glm::uvec3> triangles) const {
     if (triangles.empty()) return;
     budget_.charge(corner_count, sizeof(std::uint32_t), primitive.place, source_);
@@ -251,7 +252,8 @@ class MeshBuilder {
     budget_.charge(total, size, plan_.place, source_);
     if (total >= no_index) source_.fail_limit(plan_.place, "too many vertices");
     mesh_.positions.resize(total);
-    // Values for primitives that lack what another one has: a missing normal, texture coordinates 0, white.
+    // Default values for primitives without an attribute that another primitive has: no normal, texture coordinates 0,
+    // white.
     if (normals) mesh_.normals.values.resize(total, glm::vec3(0));
     for (std::uint32_t set = 0; set < max_texcoord_sets; ++set)
       if (sets >> set & 1) texcoords_of(mesh_, set).resize(total, glm::vec2(0));
@@ -287,7 +289,8 @@ class MeshBuilder {
       mesh_.positions[i] = glm::vec3(glm::dvec3(mesh_.positions[i]) - origin);
   }
 
-  /// Posing takes no memory, but many targets of many vertices would take too long.
+  /// Charges the budget for the work of a pose. Posing takes no memory, but many targets of many vertices would take
+  /// too long.
   void charge_pose(const VertexRun& block, const VertexPose& pose) {
     const auto targets =
         std::size_t(std::count_if(pose.weights.begin(), pose.weights.end(), [](double w) { return w != 0; }));

@@ -8,8 +8,8 @@
 namespace frontmost::gltf {
 namespace {
 
-/// The most bytes that one compressed byte can produce: 64 for vertices, since two bits can mean 16 zero bytes; 12 for
-/// indices.
+/// The most bytes that one compressed byte can produce: 64 for vertices, because two bits can stand for 16 zero bytes,
+/// and 12 for indices.
 constexpr std::uint64_t densest = 64;
 
 struct MeshoptStream {

@@ -19,13 +19,13 @@
 namespace frontmost::gltf {
 namespace {
 
-/// Sizes of the arrays that nodes refer to.
+/// The lengths of the lists that nodes refer to.
 struct Counts {
   std::size_t nodes, meshes, skins, cameras, lights;
 };
 
 glm::dmat4 read_transform(const JsonValue& json) {
-  // The format forbids nodes with both; exporters that write both mean the matrix.
+  // The format forbids nodes with a matrix and other transforms. Exporters that write both mean the matrix.
   glm::dmat4 matrix;
   if (json.read_numbers("matrix", {&matrix[0][0], 16})) {
     constexpr double tolerance = 1e-6;  // exporters that use floats
@@ -51,7 +51,8 @@ std::uint32_t copy_attribute(const JsonValue& attributes, const char* key, int c
   const std::uint32_t id = data.readable_accessor(*json);
   const Accessor& accessor = data.accessor(id);
   if (accessor.components != components) json->fail("the accessor's type does not fit");
-  // The test is for an earlier attribute, not for its elements, because later code uses one count for all attributes.
+  // The test is whether an attribute came before, not whether it had elements, because later code uses one count for
+  // all.
   const bool is_first = copies.translation == no_index && copies.rotation == no_index && copies.scale == no_index;
   if (!is_first && copies.count != accessor.count) json->fail("has another number of elements than earlier attributes");
   copies.count = accessor.count;
@@ -88,7 +89,7 @@ Node read_node(const JsonValue& json, const Counts& counts, const Data& data) {
   return node;
 }
 
-/// Gives each node its parent. With at most one parent each, the graph is a forest with unique world transforms.
+/// Gives each node its parent. No node may have two, so that the graph is a forest with unique world transforms.
 void find_parents(std::vector<Node>& nodes, const ModelSource& source) {
   for (std::size_t i = 0; i < nodes.size(); ++i)
     for (const std::uint32_t child : nodes[i].children) {
@@ -99,8 +100,8 @@ void find_parents(std::vector<Node>& nodes, const ModelSource& source) {
     }
 }
 
-/// The nodes from `starts` downwards, in order, each before its children. The stack is explicit, since trees may be a
-/// million levels deep.
+/// Returns the nodes from `starts` downwards, in order, each before its children. The stack is explicit, because trees
+/// may be a million levels deep.
 std::vector<std::uint32_t> walk(const std::vector<Node>& nodes, std::vector<std::uint32_t> starts) {
   std::vector<std::uint32_t> order, stack(starts.rbegin(), starts.rend());
   std::vector<bool> seen(nodes.size());
@@ -146,7 +147,7 @@ std::vector<std::uint32_t> place_in_world(std::vector<Node>& nodes, const ModelS
   return roots;
 }
 
-/// Start nodes of the shown scene. A start node with a parent keeps the parent's transform.
+/// Returns the nodes at which the shown scene starts. A start node with a parent keeps the parent's transform.
 std::vector<std::uint32_t> scene_starts(const JsonValue& root, std::size_t node_count,
                                         std::vector<std::uint32_t> roots) {
   const std::size_t scene_count = root.count("scenes");
@@ -158,11 +159,11 @@ std::vector<std::uint32_t> scene_starts(const JsonValue& root, std::size_t node_
   return starts;
 }
 
-/// Matrices world_from_joint * inverse bind matrix for the joints of a skin, in rest pose.
+/// For each joint of a skin in rest pose, the matrix world_from_joint * inverse bind matrix.
 using Joints = std::vector<glm::dmat4>;
 
-/// Skinned vertices are stored in world space; if they lie far from zero, they are stored relative to an origin near
-/// them.
+/// The joints of a skin. Skinned vertices are stored in world space, or relative to an origin near them if they lie far
+/// from zero.
 struct Skin {
   Joints joints;
   glm::dvec3 origin{0};
@@ -264,7 +265,7 @@ class PosedMeshes {
       source_.fail(node.place + ".weights", std::to_string(node.weights.size()) + " weights for " +
                                                 std::to_string(plan.target_count) + " morph targets");
     VertexPose pose{node.weights.empty() ? plan.weights : node.weights};
-    // Each node stores and compares weights, even those that come from its mesh.
+    // Weights are charged, because each node stores and compares them, even if they come from its mesh.
     budget_.charge(pose.weights.size(), sizeof(double), node.place, source_);
     if (skinned) pose.joints = skins_[node.skin].joints, pose.origin = skins_[node.skin].origin;
     // The skin's number stands for its joints in the key, because comparing matrices would cost more than posing.
@@ -292,7 +293,7 @@ class PosedMeshes {
     return number;
   }
 
-  /// EXT_mesh_gpu_instancing: adds one instance for each element of its attributes.
+  /// Adds one instance for each element of the attributes of EXT_mesh_gpu_instancing.
   void place_copies(const Node& node, const Instance& first) {
     const InstancingAccessors& copies = *node.copies;
     budget_.charge(copies.count, sizeof(Instance) + first.name.size() + 64, node.place, source_);

@@ -19,7 +19,7 @@
 
 namespace frontmost::gltf {
 
-/// Accessors of one set of vertices, or of a morph target's displacements.
+/// The numbers of the accessors of one set of vertices, or of a morph target's displacements.
 struct VertexSources {
   std::uint32_t position = no_index, normal = no_index, color = no_index;
   std::array<std::uint32_t, max_texcoord_sets> texcoords;
@@ -65,9 +65,9 @@ struct MeshPlan {
 [[nodiscard]] std::vector<MeshPlan> plan_meshes(const JsonValue& root, Data& data, const MaterialList& materials,
                                                 std::vector<std::string>& warnings);
 
-/// Deformation of vertices: by morph targets, then by joints.
+/// A deformation of vertices: by morph targets, then by joints.
 struct VertexPose {
-  std::vector<double> weights;              ///< one a target, or none
+  std::vector<double> weights;              ///< one per morph target, or none
   std::span<const glm::dmat4> joints = {};  ///< world_from_joint * inverse bind matrix; empty: no skin
   glm::dvec3 origin{0};                     ///< origin of the positions that the joints produce
 };
@@ -76,7 +76,7 @@ struct VertexPose {
 [[nodiscard]] Mesh read_mesh(const MeshPlan& plan, const VertexPose& pose, const Data& data, Budget& budget,
                              const ModelSource& source, std::vector<std::string>& warnings);
 
-/// Accessors of EXT_mesh_gpu_instancing.
+/// The numbers of the accessors that EXT_mesh_gpu_instancing names.
 struct InstancingAccessors {
   std::size_t count = 0;
   std::uint32_t translation = no_index, rotation = no_index, scale = no_index;
@@ -89,7 +89,7 @@ struct Node {
   std::vector<std::uint32_t> children;
   std::vector<double> weights;
   std::optional<InstancingAccessors> copies;
-  bool is_hidden = false;  ///< by KHR_node_visibility of the node or of one above it
+  bool is_hidden = false;  ///< KHR_node_visibility hides the node or a node above it
   glm::dmat4 world{1.0};   ///< world_from_node
 };
 
@@ -104,11 +104,11 @@ struct NodeTree {
 /// parents and for loops.
 [[nodiscard]] NodeTree read_nodes(const JsonValue& root, const Data& data, std::vector<std::string>& warnings);
 
-/// The transform composed of translation, rotation (x, y, z, w; any length) and scale.
+/// Returns the transform composed of translation, rotation (x, y, z, w; any length) and scale.
 [[nodiscard]] glm::dmat4 compose(const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale);
 
 /// Fills scene.meshes and scene.instances. Meshes keep the file's numbers; further poses of a mesh are appended at the
-/// end. Meshes of hidden nodes and of no shown node are read, but not placed.
+/// end. Meshes are read, but not placed, if only hidden nodes or nodes that are not shown refer to them.
 void place_meshes(const JsonValue& root, const Data& data, const std::vector<MeshPlan>& plans, const NodeTree& tree,
                   Scene& scene);
 
@@ -116,7 +116,7 @@ void place_meshes(const JsonValue& root, const Data& data, const std::vector<Mes
 /// requires.
 void place_cameras(const JsonValue& root, const NodeTree& tree, Scene& scene);
 
-/// The list of lights that nodes refer to by number (KHR_lights_punctual), or nothing.
+/// Returns the list of lights that nodes refer to by number (KHR_lights_punctual), or nothing.
 [[nodiscard]] std::optional<JsonValue> find_lights(const JsonValue& root);
 /// Fills scene.lights, one for each shown node that has a light and is not hidden.
 void place_lights(const JsonValue& root, const NodeTree& tree, Scene& scene);

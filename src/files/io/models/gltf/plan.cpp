@@ -12,10 +12,10 @@
 namespace frontmost::gltf {
 namespace {
 
-/// Limit of sets of joints, four joints each. Real files have one, rarely two.
+/// Greatest number of sets of joints. A set has four joints, and real files have one set, rarely two.
 constexpr std::size_t max_joint_sets = 16;
 
-/// The accessors that an attribute may be read from.
+/// The kinds of accessors that an attribute may be read from.
 struct Allowed {
   int least_components, most_components;
   bool integers;  ///< only unsigned integers
@@ -27,7 +27,8 @@ class AttributeReader {
   AttributeReader(const JsonValue& json, const Data& data, const DecodedPrimitive* decoded = nullptr)
       : json_(json), data_(data), decoded_(decoded) {}
 
-  /// The accessor of an attribute; no_index if absent. \throws Error if it is not allowed.
+  /// Returns the number of an attribute's accessor, or no_index if the attribute is absent. \throws Error if the
+  /// accessor is not allowed.
   std::uint32_t find(const std::string& name, Allowed allowed) {
     const std::optional<JsonValue> found = json_.find(name.c_str());
     if (!found) return no_index;
@@ -97,7 +98,7 @@ class Planner {
       plan.primitives.push_back(*std::move(primitive));
     }
     plan.target_count = target_count.value_or(0);
-    // A mesh of only points and lines has no plan in which targets are counted.
+    // In a mesh of only points and lines, no morph targets were counted.
     if (!plan.weights.empty() && !plan.primitives.empty() && plan.weights.size() != plan.target_count)
       json_.fail(std::to_string(plan.weights.size()) + " weights for " + std::to_string(plan.target_count) +
                  " morph targets");
@@ -134,7 +135,7 @@ class Planner {
     return primitive;
   }
 
-  /// The sets of texture coordinates that the primitive's material uses.
+  /// Returns the sets of texture coordinates that the primitive's material uses, a bit for each.
   std::uint32_t texcoord_sets_of(const Primitive& primitive) {
     const std::uint32_t sets = materials_.texcoord_sets[primitive.material];
     // Set 0 is often absent, with textures of a single colour, so its absence causes no warning.

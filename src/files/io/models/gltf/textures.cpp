@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each image is decoded once, in parallel, although many textures may use it with other samplers. Images of equal bytes
-// count as one, because some exporters embed a copy for each material.
+// Each image is decoded once, in parallel, although many textures may use it with other samplers. Images that name the
+// same bytes or the same file count as one, because some exporters write an image for each material.
 //
 // Textures get their numbers before it is known which images can be decoded; load() closes the gaps afterwards.
 #include "io/models/textures.h"
@@ -24,7 +24,7 @@ Texture::Wrap wrap_of(std::uint64_t code) {
 }
 constexpr std::uint64_t repeat_code = 10497, nearest_code = 9728;
 
-/// The text of a warning about a texture without an image that can be read.
+/// Returns the text of a warning about a texture without an image that can be read.
 std::string lack_of_image(const JsonValue& texture) {
   if (texture.extension("KHR_texture_basisu")) {
     const auto advice = conversion_of_extensions({"KHR_texture_basisu"}, texture.source().name());
@@ -34,7 +34,7 @@ std::string lack_of_image(const JsonValue& texture) {
   return ": has no PNG, JPEG or WebP image";
 }
 
-/// \returns false if the texture is lost.
+/// Replaces the number of a texture by its new one. \returns false if the texture is lost.
 bool remap(TextureUse& use, const std::vector<std::uint32_t>& new_numbers) {
   if (!use.is_set()) return true;
   use.texture = use.texture == lost_texture ? no_index : new_numbers[use.texture];
@@ -43,8 +43,8 @@ bool remap(TextureUse& use, const std::vector<std::uint32_t>& new_numbers) {
   return false;
 }
 
-/// Changes a material whose texture is lost. A factor without its texture would not mean what the file says, so the
-/// layer goes; textures that only add colour or bumps are dropped.
+/// Changes a material whose texture is lost. Without its texture a factor would not mean what the file says, so the
+/// layer is removed. Textures that only add colour or bumps are just left out.
 void do_without(const TextureUse* lost, Material& m, const std::string& who, std::vector<std::string>& warnings) {
   if (lost == &m.metallic_roughness_texture) return lose_metallic_roughness_texture(m, who, warnings);
   if (lost == &m.emissive_texture) return lose_emissive_texture(m, who, warnings);
@@ -146,8 +146,8 @@ class TextureTable::ImageLoader {
 
   ImageLoader(const JsonValue& root, const Data& data) : root_(root), data_(data) {}
 
-  /// Textures that lie in the same place share an image: some exporters write an image for each material, and hostile
-  /// files write thousands.
+  /// Finds the images of textures. Images that name the same bytes or file are decoded once: some exporters write an
+  /// image for each material, and hostile files write thousands.
   void find(const std::vector<Look>& looks) {
     std::map<std::tuple<const std::byte*, std::size_t, std::string>, std::uint32_t> places;
     for (const Look& look : looks) {
@@ -222,7 +222,8 @@ class TextureTable::ImageLoader {
   const JsonValue& root_;
   const Data& data_;
   std::map<std::uint32_t, Job> by_image_;
-  std::map<std::uint32_t, std::uint32_t> first_alike_;  ///< for each image, the first one with the same bytes
+  std::map<std::uint32_t, std::uint32_t> first_alike_;  ///< for each image, the first one that names the same bytes or
+                                                        ///< file
 };
 
 void TextureTable::load(Scene& scene) const {

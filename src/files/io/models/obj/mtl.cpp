@@ -75,7 +75,7 @@ class MtlReader {
     }
   }
 
-  /// A number. Exporters write "nan" for materials without a value, which is no reason to refuse the model.
+  /// Reads a number. Exporters write "nan" for materials without a value, which is no reason to refuse the model.
   float value() {
     float value = 0;
     if (text_.next_is('-')) skip_option();

@@ -18,9 +18,10 @@ class NamedMaterials {
  public:
   NamedMaterials(const ModelSource& source, Scene& scene) : source_(source), scene_(scene) {}
 
-  /// The number of the material called `name`. \throws Error limit_exceeded.
+  /// Returns the number of the material called `name`. \throws Error limit_exceeded.
   std::uint32_t number(const std::string& name);
-  /// The number of the material called `name`, which is marked as defined by a library. \throws Error limit_exceeded.
+  /// Returns the number of the material called `name`, and marks the material as defined by a library. \throws Error
+  /// limit_exceeded.
   std::uint32_t define(const std::string& name);
   [[nodiscard]] Material& operator[](std::uint32_t number) { return scene_.materials[number]; }
   [[nodiscard]] std::vector<std::string>& warnings() { return scene_.warnings; }
@@ -34,8 +35,8 @@ class NamedMaterials {
   std::vector<bool> is_defined_;
 };
 
-/// Reads a material library. `library` names it in errors; `folder` is its folder, relative to the model.
-/// \throws Error file_malformed.
+/// Reads a material library. `library` names it in errors. `folder` is its folder, relative to the model. \throws Error
+/// file_malformed.
 void read_mtl(Bytes bytes, const ModelSource& library, const std::string& folder, TextureFiles& textures,
               NamedMaterials& materials);
 

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint64_t max_library_bytes = std::uint64_t(1) << 28;
 
-/// The lists of the whole file.
+/// The lists of values to which all faces of the file refer.
 struct ObjPool {
   std::vector<glm::vec3> positions;
   std::vector<glm::vec4> colors;  ///< as many as positions, or none
@@ -31,14 +31,14 @@ struct ObjPool {
   std::vector<glm::vec3> normals;
 };
 
-/// A polygon's contribution to its mesh beside the positions.
+/// What a polygon adds to its mesh apart from positions.
 struct ObjFace {
   std::span<const glm::uvec3> triangles;                 ///< as indices of the corners
-  const std::vector<std::uint32_t>&texcoords, &normals;  ///< one a corner; no_index: none
+  const std::vector<std::uint32_t>&texcoords, &normals;  ///< one per corner; no_index if the corner has none
   std::uint32_t material;
 };
 
-/// Appends corner indices for the newest triangles. The list starts with the first face that has any.
+/// Appends corner indices for the newest triangles. The list starts with the first face that has the attribute.
 template <class T>
 void add_corners(Attribute<T>& attribute, std::span<const glm::uvec3> triangles,
                  const std::vector<std::uint32_t>& corners, std::size_t triangles_before) {
@@ -87,7 +87,8 @@ std::vector<T> gather(const std::vector<T>& pool, const std::vector<std::uint32_
   return values;
 }
 
-/// Corners without a value get one that counts as missing. Indices that equal those of the positions need no list.
+/// Completes an attribute. Corners without a value get one that counts as missing. The list of indices is dropped if
+/// they equal those of the positions.
 template <class T>
 void complete(Attribute<T>& attribute, const Mesh& mesh) {
   if (attribute.triangles.empty()) {
@@ -158,7 +159,8 @@ class ObjMeshes {
   bool is_mixed_ = false;  ///< the current mesh has more than one material
 };
 
-/// Indices of one list in a polygon's corners, and the greatest index so far, which may be defined later.
+/// The indices of a polygon's corners into one list of the file, and the greatest index so far, which may name an
+/// element that the file defines later.
 struct IndexList {
   const char* what;
   std::vector<std::uint32_t> corners;
@@ -319,7 +321,7 @@ class ObjReader {
     scene_.warnings.push_back(text_.place() + ": statements " + in_quotes(word) + " are passed over");
   }
 
-  /// Reads the libraries of a statement, which is tried as one name with blanks first, then as several names.
+  /// Reads the libraries of a statement. Its text is tried as one name with blanks first, then as several names.
   void library(const std::string& names) {
     const std::string place = text_.place();
     if (names.empty()) return;

@@ -53,7 +53,7 @@ struct PlyElement {
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
 
-  /// The size of a row whose lists are empty; without lists, the size of each row.
+  /// Returns the size of a row whose lists are empty. If there are no lists, each row has this size.
   [[nodiscard]] std::size_t least_row_size() const {
     std::size_t size = 0;
     for (const PlyProperty& property : properties)
@@ -76,23 +76,23 @@ struct PlyHeader {
   std::size_t line_count = 0;  ///< lines before the first row
 };
 
-/// The byte order of a binary file's rows.
+/// Returns the byte order of a binary file's rows.
 [[nodiscard]] inline Endian endian_of(const PlyHeader& header) {
   return header.encoding == PlyEncoding::big ? Endian::big : Endian::little;
 }
 
-/// Reads the header. `bytes` start the file and hold at least its header; the whole file has `file_size` bytes.
-/// \throws Error file_malformed, also when the file is too short for the rows that the header promises.
+/// Reads the header. `bytes` start the file and hold at least its header. The whole file has `file_size` bytes. \throws
+/// Error file_malformed, also when the file is too short for the rows that the header promises.
 [[nodiscard]] PlyHeader read_ply_header(Bytes bytes, std::uint64_t file_size, const ModelSource& source);
 
-/// Adds materials for the texture files that the header names; the scene's first mesh uses them.
+/// Adds materials for the texture files that the header names. The scene's first mesh uses them.
 void add_texture_materials(const PlyHeader& header, const ModelSource& source, Scene& scene);
 
 }  // namespace frontmost
 
 namespace frontmost::ply {
 
-/// Reads binary values in place, in either byte order. Both kinds of rows check that a value exists before they read
+/// Reads binary values in place, in either byte order. Rows of both kinds check that a value exists before they read
 /// it, and name the element and the row in errors. Their interface:
 ///   begin_row(element, row)   before the values of a row
 ///   number(type)              the next value as a float
@@ -175,7 +175,7 @@ class PlyAsciiRows {
     row_ = row;
     if (started_) text_.next_line();
     started_ = true;
-    if (!text_.to_word()) fail("the file ends before the row");
+    if (!text_.to_word()) fail("the file ends before this row");
   }
   float number(PlyType) {
     float value = 0;
@@ -216,7 +216,7 @@ class PlyAsciiRows {
   std::uint64_t row_ = 0;
 };
 
-/// Meaning of a property. The first twelve roles are places in a row of floats.
+/// The meaning of a property. The first twelve roles are places in a row of floats.
 enum class Role : std::uint8_t { x, y, z, nx, ny, nz, u, v, red, green, blue, alpha, corners, wedge_uv, texture, none };
 inline constexpr std::size_t float_roles = 12;
 
@@ -281,13 +281,13 @@ inline glm::vec3 three(const FloatRow& row, Role first) {
   const auto i = std::size_t(first);
   return {row[i], row[i + 1], row[i + 2]};
 }
-/// Texture coordinates, converted from PLY, where v points up.
+/// Returns texture coordinates, converted from those of PLY, in which v points up.
 inline glm::vec2 texcoord(float u, float v) { return {u, 1.0f - v}; }
 inline glm::vec4 color(const FloatRow& row) {
   return linear_color(glm::vec4(three(row, Role::red), row[std::size_t(Role::alpha)]));
 }
 
-/// Reads a value into `row` if its role has a place there. \returns whether it has one.
+/// Reads a value into `row` if its role has a place there. \returns false if it has none.
 template <class Rows>
 bool read_float(Rows& rows, const Column& column, FloatRow& row) {
   if (column.property.is_list || std::size_t(column.role) >= float_roles) return false;
@@ -361,7 +361,7 @@ class VertexReader {
   bool has_normals_ = false, has_texcoords_ = false, has_colors_ = false;
 };
 
-/// Vertices are numbered as in the file.
+/// The vertices of a whole file, which have the same numbers in the mesh.
 struct AllVertices {
   [[nodiscard]] std::uint64_t count(const Mesh& mesh) const { return mesh.positions.size(); }
   std::uint32_t operator()(std::uint64_t index, Mesh&) { return std::uint32_t(index); }

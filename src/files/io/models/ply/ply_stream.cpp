@@ -18,7 +18,7 @@ namespace {
 
 using namespace ply;
 
-/// Greatest header, greatest row, and greatest size of a pipe's vertices, in bytes.
+/// Limits in bytes for a header, for a row, and for the vertices of a pipe.
 constexpr std::size_t max_header = std::size_t(1) << 24;
 constexpr std::size_t max_row = std::size_t(1) << 28;
 constexpr std::uint64_t max_kept_vertices = std::uint64_t(1) << 29;
@@ -38,7 +38,8 @@ class RowScanner {
     std::uint64_t size = 0, triangles = 0;
     bool is_whole = false;
   };
-  /// The row at the start of `bytes`. An incomplete row is returned as far as it goes, for the parser to report.
+  /// Returns the row at the start of `bytes`. An incomplete row is returned as far as it is known; the parser reports
+  /// it.
   [[nodiscard]] Row scan(Bytes bytes) const {
     Row row;
     for (const Step& step : steps_) {
@@ -82,7 +83,7 @@ struct VertexRows {
     reader->read(part, begin, end, coordinates, mesh);
   }
 
-  /// The best origin of the vertices. The first block suffices if the model lies near zero.
+  /// Returns the best origin of the vertices. The first block suffices if the model lies near zero.
   [[nodiscard]] glm::dvec3 fitting_origin() const {
     constexpr std::uint64_t block = 4096;
     Coordinates coordinates;
@@ -192,7 +193,7 @@ class PlyStream final : public ModelStream {
     throw Error(ErrorCode::unsupported, source_.name(), "header", reason);
   }
 
-  /// Finds one element of vertices and one of faces behind it. Others are skipped, if their length is known.
+  /// Finds one element of vertices and one of faces behind it. Other elements are skipped, if their length is known.
   void choose_elements() {
     // Each element fits into the file, but the sum of all is not checked yet.
     constexpr std::uint64_t farthest = std::uint64_t(1) << 62;
@@ -254,9 +255,9 @@ class PlyStream final : public ModelStream {
     source_.fail("header", "the file ends before its rows");
   }
 
-  /// Fills the piece with whole rows. Remaining bytes wait for the next piece and count for it, because polygons make
-  /// more triangles a byte than triangles do. `again` means that a row was longer than all bytes, so twice as many are
-  /// read.
+  /// Fills the piece with whole rows. Remaining bytes are kept for the next piece and count for it, because polygons
+  /// make more triangles per byte than triangles do. `again` means that a row was longer than all bytes, so twice as
+  /// many are read.
   void fetch_rows(StreamPiece& piece, std::uint64_t triangles, bool again) {
     const std::size_t row = faces_->least_row_size() + 3 * corner_size();
     const std::size_t enough = std::max<std::size_t>(std::size_t(triangles) * row, 4096);

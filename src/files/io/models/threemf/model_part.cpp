@@ -92,7 +92,7 @@ constexpr Rule rules[] = {
     {Tag::build, core, "item", Tag::item},
 };
 
-/// `core_space` is the prefix that this file's names of core tags have.
+/// Returns the meaning of a tag within `parent`. `core_space` is the prefix of core tags in this file.
 Tag tag_of(Tag parent, std::string_view name, std::string_view core_space) {
   for (const Rule& rule : rules) {
     if (rule.parent != parent || !name.ends_with(rule.name)) continue;
@@ -119,7 +119,7 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(0, text.find_last_not_of(blanks) + 1);
 }
 
-/// A number, which may be infinite or NaN: such vertices are kept, as in all formats.
+/// Returns a number, which may be infinite or NaN: such vertices are kept, as in all formats.
 std::optional<double> parse_number(std::string_view text) {
   const std::string_view word = trimmed(text);
   double value = 0;
@@ -127,7 +127,7 @@ std::optional<double> parse_number(std::string_view text) {
   return parse_double(word.data(), end, value) == end ? std::optional(value) : std::nullopt;
 }
 
-/// A whole number below no_index.
+/// Returns a whole number below no_index.
 std::optional<std::uint32_t> parse_index(std::string_view text) {
   const std::string_view word = trimmed(text);
   std::int64_t value = 0;
@@ -137,7 +137,7 @@ std::optional<std::uint32_t> parse_index(std::string_view text) {
   return std::uint32_t(value);
 }
 
-/// A colour #RRGGBB or #RRGGBBAA in sRGB, converted to linear light.
+/// Returns a colour #RRGGBB or #RRGGBBAA in sRGB, converted to linear light.
 std::optional<glm::vec4> parse_color(std::string_view text) {
   const std::string_view word = trimmed(text);
   if ((word.size() != 7 && word.size() != 9) || word[0] != '#') return std::nullopt;
@@ -150,7 +150,7 @@ std::optional<glm::vec4> parse_color(std::string_view text) {
   return linear_color(srgb);
 }
 
-/// Twelve finite numbers: the rows of a matrix for row vectors, without its last column.
+/// Returns a transform by twelve finite numbers: the rows of a matrix for row vectors, without its last column.
 std::optional<glm::dmat4> parse_transform(std::string_view text) {
   glm::dmat4 matrix(1.0);
   for (int i = 0; i < 12; ++i) {
@@ -212,7 +212,7 @@ class ModelPartReader : public XmlPart {
   }
 
  private:
-  /// Reads values of a tag; its messages name the tag.
+  /// Reads the values of a tag. Its messages name the tag.
   class TagReader {
    public:
     TagReader(const Attributes& attributes, ModelPartReader& reader) : attributes_(attributes), reader_(reader) {}
@@ -233,7 +233,7 @@ class ModelPartReader : public XmlPart {
       if (!value) fail(name, no_index_reason);
       return *value;
     }
-    /// An index that only affects appearance: a wrong one causes a warning and counts as absent.
+    /// Returns an index that only affects appearance. A wrong one causes a warning and counts as absent.
     [[nodiscard]] std::uint32_t look_index_or(std::string_view name, std::uint32_t absent) const {
       const std::optional<std::uint32_t> value = find(name) == nullptr ? absent : parse_index(require(name));
       if (!value) warn(name, no_index_reason);
@@ -256,7 +256,7 @@ class ModelPartReader : public XmlPart {
     ModelPartReader& reader_;
   };
 
-  /// Warns about the first of each kind, because a file may hold millions.
+  /// Warns about the first fault of each kind, because a file may hold millions.
   void warn_once(const std::string& kind, const std::string& what) {
     if (warned_.insert(kind).second) part_.warnings.push_back(place() + ": " + what);
   }
@@ -306,7 +306,7 @@ class ModelPartReader : public XmlPart {
     group_->element = name.substr(name.rfind('|') + 1);
   }
 
-  /// Reads a colour. \returns white if the value is none.
+  /// Reads a colour. \returns white if the value is no colour.
   static glm::vec4 color(const TagReader& tags, std::string_view name) {
     const char* const value = tags.find(name);
     const std::optional<glm::vec4> color = value == nullptr ? std::nullopt : parse_color(value);
@@ -351,7 +351,8 @@ class ModelPartReader : public XmlPart {
     if (vertices_.size() >= no_index) source().fail_limit(place(), "too many vertices");
     vertices_.emplace_back(tags.number("x"), tags.number("y"), tags.number("z"));
   }
-  /// The vertices of a mesh stay doubles until all are known, which determines the best origin for floats.
+  /// Ends the list of a mesh's vertices and converts the vertices to floats. They are doubles until then, because the
+  /// best origin for the floats depends on all vertices.
   void end_vertices() {
     Mesh& mesh = this->mesh();
     if (!mesh.positions.empty()) fail("a second list of vertices in one mesh");

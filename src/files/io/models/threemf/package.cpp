@@ -2,9 +2,9 @@
 // Unpacks and parses parts piece by piece. The unpacked size is checked against a limit for archives of this size
 // before memory is allocated: a kilobyte of zip can hold a megabyte of blanks.
 //
-// The XML parser is C code and calls back into XmlPart. Exceptions must not pass through it, so one is kept until it
-// returns. Memory is bounded for any text. Document types are refused, and with them all entities that would grow on
-// use. Tags, levels and different names have limits, because the parser keeps data about them.
+// The XML parser is C code and calls back into XmlPart. Exceptions must not pass through the parser, so an exception is
+// kept until the parser returns. Memory is bounded for any text. Document types are refused, and with them all entities
+// that would grow on use. Tags, levels and different names have limits, because the parser keeps data about them.
 #include <expat.h>
 #include <zip.h>
 
@@ -28,7 +28,7 @@ struct CloseFile {
 constexpr std::size_t longest_tag = std::size_t(1) << 20, most_names = 4096;
 constexpr int most_tag_levels = 256;
 
-/// A tag that names a part, and the kind that it must state for the model.
+/// A tag that names a part, and the kind that the tag must state if the part is the model.
 struct Naming {
   const char* part;
   std::string_view tag, kind_attribute, kind, name_attribute;
@@ -43,7 +43,7 @@ class NamingReader : public XmlPart {
  public:
   NamingReader(const Naming& naming, const ModelSource& source) : XmlPart(naming.part, source), naming_(naming) {}
 
-  /// The named part; empty if there is none, or before read().
+  /// Returns the named part, or an empty text if there is none, or before read().
   [[nodiscard]] const std::string& found() const { return found_; }
 
  protected:

@@ -4,7 +4,7 @@
 //   package --> start part --> model parts, each read once --> items of the start part --> instances
 //                                                              through components of components, each with a transform
 //
-// Base materials become materials of the scene; colours become colours of corners, with a plain material, which blends
+// Base materials become materials of the scene. Colours become colours of corners, with a plain material, which blends
 // if a colour is transparent.
 //
 // A component may name an object of another part, and a few components can stand for a million instances. So levels are
@@ -42,7 +42,7 @@ class PlainMaterials {
   std::array<std::uint32_t, 2> numbers_{no_index, no_index};
 };
 
-/// Colours one mesh.
+/// Gives colours and materials to one mesh.
 class Painter {
  public:
   Painter(const ModelPart& part, const Object& object, bool& has_warned, PlainMaterials& plain, Scene& scene)
@@ -73,7 +73,7 @@ class Painter {
   }
 
  private:
-  /// \returns null if the part has no such group.
+  /// Returns the group that a triangle's property names, or null with a warning if the part has no such group.
   const PropertyGroup* group_of(const Property& property, std::size_t triangle) {
     if (group_ == nullptr || property.group != group_number_) {
       const auto found = part_.groups.find(property.group);
@@ -84,7 +84,7 @@ class Painter {
     return group_;
   }
 
-  /// Warns once a part, because a file may hold millions of such triangles.
+  /// Warns once per part, because a file may hold millions of such triangles.
   void warn(std::size_t triangle, const std::string& reason) {
     if (std::exchange(has_warned_, true)) return;
     scene_.warnings.push_back(printable(part_.name) + ": line " + std::to_string(object_.line) + ": triangle " +

@@ -25,12 +25,13 @@ struct XML_ParserStruct;
 
 namespace frontmost::threemf {
 
-/// A part's name without its leading slash, for messages and for this class: "3D/3dmodel.model".
+/// Returns a part's name without its leading slash, for messages and for Package: "3D/3dmodel.model".
 [[nodiscard]] std::string part_name(std::string_view reference);
 
 class Package {
  public:
-  /// Borrows both. \throws Error file_malformed if the bytes are no zip archive, or a truncated one.
+  /// Opens an archive. Borrows the bytes and the source. \throws Error file_malformed if the bytes are no zip archive,
+  /// or a truncated one.
   Package(Bytes bytes, const ModelSource& source);
 
   [[nodiscard]] bool has(const std::string& part) const { return numbers_.count(key_of(part)) > 0; }
@@ -44,7 +45,7 @@ class Package {
   struct Close {
     void operator()(zip* archive) const;
   };
-  /// Normalises the case of a part's name, because names differ only without regard to case.
+  /// Returns a part's name in lower case, because names that differ in case only are equal.
   [[nodiscard]] static std::string key_of(const std::string& part);
 
   const ModelSource& source_;
@@ -57,7 +58,7 @@ class Package {
 class Attributes {
  public:
   explicit Attributes(const char** pairs) : pairs_(pairs) {}
-  /// The value of an attribute, or null.
+  /// Returns the value of an attribute, or null.
   [[nodiscard]] const char* find(std::string_view name) const {
     for (const char** p = pairs_; *p != nullptr; p += 2)
       if (name == *p) return p[1];
@@ -68,7 +69,7 @@ class Attributes {
   const char** pairs_;
 };
 
-/// Base of readers of XML parts; derived classes interpret the tags. Text between tags is skipped. Tags of more than a
+/// Base of readers of XML parts. Derived classes interpret the tags. Text between tags is skipped. Tags of more than a
 /// megabyte, more than 256 levels, and more than 4096 different names are refused.
 class XmlPart {
  public:
@@ -77,11 +78,11 @@ class XmlPart {
   XmlPart(const XmlPart&) = delete;
   XmlPart& operator=(const XmlPart&) = delete;
 
-  /// \throws Error "file: part: line N: reason", and as Package::unpack() does.
+  /// Reads the part. \throws Error "file: part: line N: reason", and as Package::unpack() does.
   void read(Package& package);
 
  protected:
-  /// `name` is "namespace|name".
+  /// Called for each tag that starts. `name` is "namespace|name".
   virtual void start(std::string_view name, const Attributes& attributes) = 0;
   virtual void end() = 0;
   /// Called for each namespace that the next tag declares.
@@ -90,7 +91,7 @@ class XmlPart {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const ModelSource& source() const { return source_; }
   [[nodiscard]] std::size_t line() const;
-  /// The part and its current line.
+  /// Returns the part and its current line, for messages.
   [[nodiscard]] std::string place() const;
   [[noreturn]] void fail(const std::string& reason) const { source_.fail(place(), reason); }
 
@@ -114,11 +115,11 @@ class XmlPart {
   std::unordered_set<std::string, Hash, std::equal_to<>> names_;
 };
 
-/// The model's part, by the package's relationships or, if these name none, by its content types.
-/// \throws Error file_malformed if no part is a model.
+/// Returns the model's part, by the package's relationships or, if these name none, by its content types. \throws Error
+/// file_malformed if no part is a model.
 [[nodiscard]] std::string find_start_part(Package& package, const ModelSource& source);
 
-/// Colours or materials. Triangles refer to them by the group's number and an index in the group.
+/// A group of colours or materials. Triangles refer to them by the group's number and an index in the group.
 struct PropertyGroup {
   enum class Kind : std::uint8_t { materials, colors, unknown };
   Kind kind = Kind::unknown;
@@ -128,7 +129,7 @@ struct PropertyGroup {
   std::vector<glm::vec4> colors;  ///< linear, for groups of colours
 };
 
-/// Indices in a group: one for all corners, or one for each. no_index: none.
+/// Indices of a triangle's corners in a group: the same for all corners, or one for each. no_index means none.
 struct Property {
   std::uint32_t group = no_index;
   std::array<std::uint32_t, 3> corners{no_index, no_index, no_index};
@@ -147,7 +148,7 @@ struct Object {
   std::size_t line = 0;
   std::uint32_t mesh = no_index;              ///< number in the scene; none for objects of components
   Property property;                          ///< for triangles without one of their own
-  std::vector<Property> triangle_properties;  ///< one a triangle, or none
+  std::vector<Property> triangle_properties;  ///< one per triangle, or none at all
   std::vector<PlacedObject> components;
 };
 
