@@ -31,12 +31,11 @@ inline constexpr int edge_kind_count = 5;
 
 struct LineOptions {
   /// Radians, 0 to pi: an edge is a crease if the normals of its triangles differ by more, but never if the triangles
-  /// are coplanar. None: the angle at the edge is compared with the angles at the next edges of both surfaces. The edge
-  /// is a crease if its angle exceeds half of each of these angles by at least 18 degrees. 12 degrees suffice if both
-  /// surfaces bend evenly and by at most half as much as the edge, 9 degrees if a crease continues along the edge.
-  /// Slivers get the normals of the surfaces around them. Triangles at more than 34 degrees always form a crease, those
-  /// at less than 15 never. A crease of one or two edges that ends in the air is dropped, unless it is longer than a
-  /// twentieth of the scene's diagonal.
+  /// are coplanar. None: an edge is a crease if it bends by at least 18 degrees more than half of what each surface
+  /// bends by at its next edge; 12 degrees suffice if both surfaces bend evenly and by at most half as much as the
+  /// edge, 9 degrees if a crease continues along the edge. Triangles at more than 34 degrees always form a crease,
+  /// those at less than 15 never. A crease of one or two edges that ends in the air is dropped, unless it is longer
+  /// than a twentieth of the scene's diagonal.
   std::optional<double> crease_angle = std::nullopt;
   /// True: DrawnPart::hidden_by counts surfaces. False: hidden_by is 0 or 1, which takes less time.
   bool counts_hidden = false;
@@ -59,9 +58,8 @@ struct DrawnPart {
   double begin = 0, end = 1;
   glm::dvec2 from{0}, to{0};    ///< pixels of the view: x right, y down, the first pixel's centre at (0.5, 0.5)
   std::uint32_t hidden_by = 0;  ///< number of surfaces in front, see LineOptions::counts_hidden; 0: seen
-  /// True: the part is seen, and bounds the scene as seen in the picture. The part is a silhouette or a boundary with
-  /// its triangles on one side, and on the other side the scene has no triangle at any depth. Other silhouettes have
-  /// triangles of the scene on both sides.
+  /// True: the part is seen, and bounds the picture of the scene. Its triangles lie on one side (it is a silhouette or
+  /// a boundary), and on the other side the scene has no triangle at any depth.
   bool is_outline = false;
 };
 
@@ -71,36 +69,30 @@ struct Drawing {
   std::vector<DrawnPart> parts;  ///< in the order of their edges; nothing outside the view
 };
 
-// The rules of draw_lines():
-//
-// - Hiding. A triangle hides a point if the line of sight passes through the triangle, its edges included, in front of
-//   the point. Signs of determinants of the vertices' floats decide this, without tolerance. An edge is therefore not
-//   hidden by its own triangles, nor by others in their planes, and nothing is seen through the seam between two
-//   triangles. Only the ends of parts are rounded, to doubles. Triangles between the eye and the near plane hide
-//   nothing. Triangles with holes (alpha mode MASK) hide as if they had none. View::culling is ignored.
-// - Vertices at one place count as one, which closes open seams of files without shared vertices.
-// - Intersections. Two triangles intersect if each has vertices strictly on both sides of the other's plane. An edge
-//   is an intersection, too, if it lies in the plane of a triangle between its own two, and is not drawn for another
-//   reason. An object that only stands on a surface does not intersect it. Ends of intersections are rounded, so a
-//   plane counts as containing an end if rounding leaves that open. Lines of surfaces that cross have no gaps: segments
-//   share their ends to the bit.
-// - Degenerate triangles, with vertices exactly on one line, are left out. If they fill a T-junction between a long
-//   edge and the short edges that meet it, the long edge's triangle counts as split at the vertices on that edge. The
-//   seam is then drawn like any other edge, or not at all if the surface continues. An unfilled T-junction is open: its
-//   edges are boundaries.
-// - Duplicates. A triangle that occurs again, with its vertices in any order, counts once. Two objects, such as a
-//   housing and its cover, may share triangles up to an edge and part there; so may two surfaces of one object. Each of
-//   the two then continues by itself, and their common edge is drawn once, with the kind that comes first in EdgeKind.
-//   So no line is drawn where two objects, each smooth, pass through each other exactly along a common edge.
+// The rules of draw_lines(): - Hiding. A triangle hides a point if the line of sight passes through the triangle, its
+// edges included, in front of the point. Signs of determinants of the vertices' floats decide this, without tolerance.
+// An edge is therefore not hidden by its own triangles, nor by others in their planes, and nothing is seen through the
+// seam between two triangles. Only the ends of parts are rounded, to doubles. Triangles between the eye and the near
+// plane hide nothing. Triangles with holes (alpha mode MASK) hide as if they had none. View::culling is ignored. -
+// Vertices at one place count as one, which closes open seams of files without shared vertices. - Intersections. Two
+// triangles intersect if each has vertices strictly on both sides of the other's plane. An edge is an intersection,
+// too, if it lies in the plane of a triangle between its own two, and is not drawn for another reason. An object that
+// only stands on a surface does not intersect it. Ends of intersections are rounded, so a plane counts as containing an
+// end if rounding leaves that open. Lines of surfaces that cross have no gaps: segments share their ends to the bit. -
+// Degenerate triangles, with vertices exactly on one line, are left out. If they fill a T-junction between a long edge
+// and the short edges that meet it, the long edge's triangle counts as split at the vertices on that edge. The seam is
+// then drawn like any other edge, or not at all if the surface continues. An unfilled T-junction is open: its edges are
+// boundaries. - Duplicates. A triangle that occurs again, with its vertices in any order, counts once. Two objects,
+// such as a housing and its cover, may share triangles up to an edge and part there; so may two surfaces of one object.
+// Each of the two then continues by itself, and their common edge is drawn once, with the kind that comes first in
+// EdgeKind. So no line is drawn where two objects, each smooth, pass through each other exactly along a common edge.
 
 /// Finds the feature edges of `surfaces` and cuts each into seen and hidden parts. The result is the same to the bit
-/// for any number of threads and every instruction set. Near-linear: each edge is tested against the triangles in the
-/// cells of a screen grid that the edge passes. Within a cell the time is quadratic with `counts_hidden`, or if
-/// thousands of edges and triangles share the cell, as in stacks of triangles that are all seen, or at a vertex of
-/// thousands of slivers (20,000 take 11 s). (A. Appel. The Notion of Quantitative Invisibility and the Machine
-/// Rendering of Solids. 1967.)
-/// \throws Error as validate(view) does; bad_argument for an angle out of range; limit_exceeded for more than 2^20
-/// segments of intersections plus 16 per triangle, 2^21 parts plus 4 per edge, or about 20 s of work.
+/// for any number of threads and every instruction set. Near-linear; quadratic with `counts_hidden`, or if thousands of
+/// edges and triangles lie in one place of the screen, as at a vertex of thousands of slivers: 20,000 take 11 s. (A.
+/// Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.) \throws Error as
+/// validate(view) does; bad_argument for an angle out of range; limit_exceeded for more than 2^20 segments of
+/// intersections plus 16 per triangle, 2^21 parts plus 4 per edge, or about 20 s of work.
 [[nodiscard]] Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions& options = {},
                                  const Execution& execution = {});
 
@@ -117,20 +109,18 @@ struct Drawing {
 
 struct StrokeOptions {
   bool with_hidden = true;  ///< false: hidden parts are left out
-  /// Radians, 0 to pi/2: hidden intersections are left out if their surfaces cross at a smaller angle. Two surfaces of
-  /// nearly the same shape, such as a bolt and its bore, have many intersections, which show only the tessellation.
+  /// Radians, 0 to pi/2: hidden intersections are left out if their surfaces cross at a smaller angle. Where surfaces
+  /// nearly coincide, as a bolt in its bore, intersections are many and show only the tessellation.
   double grazing_angle = 0;
   bool by_kind = true;      ///< false: edges of different kinds may share a stroke
   bool by_outline = true;   ///< false: outlines and other lines may share a stroke
   bool by_instance = true;  ///< false: edges of different objects may share a stroke
-  /// Pixels, 0.002 to 1: lines that are closer to each other than this are drawn once, and a stroke that stays this
-  /// close to its beginning becomes a point.
+  /// Pixels, 0.002 to 1: lines closer to each other are drawn once; strokes this close to their beginning are points.
   double apart = 0.002;
   double tolerance = 0.01;  ///< pixels, 0.0001 to 1: greatest distance of a stroke from its parts
   /// Pixels, 0 to 100. Above 0: four or more consecutive parts become an arc if their ends lie within this distance of
-  /// a circle, at most 20 degrees apart. Polygons of up to 17 sides stay polygons. The arc also stays within this
-  /// distance of a part, unless two of the six parts around that part (three before, three after) are at least half as
-  /// long as the part.
+  /// a circle, at most 20 degrees apart: polygons of up to 17 sides stay polygons. The arc also stays within this
+  /// distance of each part, unless two of the three parts before it and after it are at least half as long.
   double arc_tolerance = 0;
   /// Pixels, 0 to 10000: a shorter stroke is left out if it ends in the air, or joins lines that continue without it.
   /// Pieces of silhouettes and boundaries that close an outline are kept.
@@ -166,22 +156,20 @@ struct Strokes {
 [[nodiscard]] Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options = {},
                                     const Execution& execution = {});
 
-// Hatching and stippling: pen lines and dots that show the darkness of visible surfaces.
+// Hatching and stippling: the darkness of surfaces, in pen lines and dots on what is seen of them.
 //
 //    bright      half dark      darker        in shadow
 //                /   /   /    / / / / / /     X X X X X X
 //                  /   /   /  / / / / / /     X X X X X X
 //                /   /   /    / / / / / /     X X X X X X
 //
-// The lines of a HatchSet are drawn wherever the brightness is below its threshold, so darker places have the lines of
-// several sets.
+// Each HatchSet is drawn wherever the brightness is below its threshold, so darker places have the lines of several.
 
 /// Brightness of surfaces: the cosine of the angle between normal and light; 0 in shadow, and for surfaces turned away.
 /// Both sides of a surface are lit.
 ///
-/// The normal of a triangle at one of its vertices is the mean over those of the object's triangles there whose normals
-/// differ from the triangle's own normal by at most the crease angle. Brightness therefore changes smoothly wherever no
-/// crease is drawn. Normals of the model's file are ignored.
+/// The normal at a vertex is the mean of the object's triangles there whose normals differ from the triangle's own by
+/// at most the crease angle, so brightness changes smoothly where no crease is. Normals of the file are ignored.
 struct ToneOptions {
   /// Direction towards the light, world space, any length but zero. None: from the upper left in front of the
   /// picture, as the key light of shade().
@@ -209,8 +197,7 @@ struct HatchOptions {
   ToneOptions tone{};
   double shortest = 0;      ///< pixels, 0 to 1000: shorter lines are left out
   bool by_instance = true;  ///< false: lines continue from object to object
-  /// True, for plotters: within a set (and instance), each line begins as near as possible to the end of the line
-  /// before.
+  /// True, for plotters: within a set (and instance), each line begins near the end of the one before.
   bool nearest_first = false;
 };
 
@@ -221,18 +208,13 @@ struct HatchLine {
   std::uint32_t instance = no_index;  ///< no_index without by_instance
 };
 
-// How hatch() works: each line of a set stands for a plane through the eye. The plane cuts every triangle below the
-// line in a segment. The segment is cut where it goes out of sight, as edges are in draw_lines(), and likewise where it
-// enters shadow, in the view of the light. The brightness crosses HatchSet::below at a root of a quadratic equation.
-// Nothing is sampled. Pieces that meet are joined, and lie on their line up to the rounding of doubles.
-
 /// The pieces of hatch lines that lie on visible, dark parts of `surfaces`, sorted by set, then by line, then along the
-/// line. The result is the same to the bit for any number of threads and every instruction set. O(segments), one for
-/// each triangle and line over it, beside the grids of occluders of draw_lines().
-/// (G. Winkenbach, D. Salesin. Computer-Generated Pen-and-Ink Illustration. 1994; E. Praun, H. Hoppe, M. Webb, A.
-/// Finkelstein. Real-Time Hatching. 2001: sets that stay where darker ones are added.)
-/// \throws Error as validate(view) does; bad_argument for options out of range; limit_exceeded for more than 2^26
-/// pieces before joining, or lines tested against more than 2^33 boxes and 16,384 for each triangle.
+/// line. Nothing is sampled. The result is the same to the bit for any number of threads and every instruction set.
+/// O(segments), one for each triangle and line over it, beside the grids of occluders of draw_lines(). (G. Winkenbach,
+/// D. Salesin. Computer-Generated Pen-and-Ink Illustration. 1994; E. Praun, H. Hoppe, M. Webb, A. Finkelstein.
+/// Real-Time Hatching. 2001: sets that stay where darker ones are added.) \throws Error as validate(view) does;
+/// bad_argument for options out of range; limit_exceeded for more than 2^26 pieces before joining, or lines tested
+/// against more than 2^33 boxes and 16,384 for each triangle.
 [[nodiscard]] std::vector<HatchLine> hatch(const Surfaces& surfaces, const View& view, const HatchOptions& options,
                                            const Execution& execution = {});
 
@@ -253,8 +235,7 @@ struct Stipple {
 /// `spacing` in shadow, and in between the more, the darker the surface is. Dots are spread evenly, in a pattern that
 /// depends on the picture alone. The same exact signs as in hatch() decide whether a dot is seen and lit. Dots are
 /// sorted by row, then from the left. Cost, threads and errors as for hatch(); limit_exceeded if the picture has room
-/// for more than 20 million dots.
-/// (R. Ulichney. The Void-and-Cluster Method for Dither Array Generation. 1993.)
+/// for more than 20 million dots. (R. Ulichney. The Void-and-Cluster Method for Dither Array Generation. 1993.)
 [[nodiscard]] std::vector<Stipple> stipple(const Surfaces& surfaces, const View& view, const StippleOptions& options,
                                            const Execution& execution = {});
 
@@ -286,9 +267,8 @@ struct CutFace {
 };
 
 struct Section {
-  /// The part of the scene behind the plane. Instances keep their numbers and names; each has its own mesh with
-  /// positions in world space and no transform. Materials keep their numbers but lose their textures; the materials of
-  /// the faces come after them.
+  /// The part of the scene behind the plane. Instances keep their numbers and names; each has its own mesh in world
+  /// space. Materials keep their numbers but lose their textures; the materials of the faces come after them.
   Scene scene;
   std::vector<CutFace> faces;  ///< by instance; only objects that the plane cuts
 };
@@ -304,10 +284,9 @@ struct Section {
 
 /// Cuts every object by the plane. The remains of a closed object are closed: triangles that lie exactly in the plane
 /// fill the cut, and share their vertices with the cut triangles, to the bit. Normals, texture coordinates and colours
-/// of vertices are lost. Triangles with non-finite vertices are left out.
-/// O(triangles); the n vertices of a cut take n log n if the cut looks like one of a machine part, n * n for combs and
-/// mazes.
-/// (G. Meisters. Polygons Have Ears. 1975.) \throws Error bad_argument for a plane that is not finite as a float.
+/// of vertices are lost. Triangles with non-finite vertices are left out. O(triangles); the n vertices of a cut take n
+/// log n if the cut looks like one of a machine part, n * n for combs and mazes. (G. Meisters. Polygons Have Ears.
+/// 1975.) \throws Error bad_argument for a plane that is not finite as a float.
 [[nodiscard]] Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution& execution = {});
 
 /// \returns for each instance the number of the style, 0 to 5, that hatches the object in all of these sections; 0 also
@@ -332,14 +311,11 @@ struct SectionHatching {
 // Rounds: circles, cylinders and surfaces of revolution behind a scene's triangles, and their centre lines in drawings.
 //
 //            |
-//         .-~|~-.         +-----------------+
-//   - - /- - + - -\ - -   |- - - - - - - - -|- -
-//       \    |    /       +-----------------+
-//         `-~|~-'
+//         .-~|~-.         +-----------------+      A triangle file has polygons in place of circles. Drawings need the
+//   - - /- - + - -\ - -   |- - - - - - - - -|- -   circles: a cross over a circle that is seen along its axis, an axis
+//       \    |    /       +-----------------+      line where it is seen from the side, and a diameter among the
+//         `-~|~-'                                  dimensions.
 //            |
-//
-// A triangle file has polygons in place of circles. Drawings need the circles: a cross over a circle that is seen along
-// its axis, an axis line where it is seen from the side, and a diameter among the dimensions.
 
 enum class RoundKind : std::uint8_t { circle, cylinder, revolved };
 
@@ -375,8 +351,7 @@ struct Rounds {
 //   domes, cones. Cylinders are separate, and whole spheres, which have no axis of their own, are left out.
 
 /// Finds the circles and cylinders of which at least 160 degrees exist, and other surfaces of revolution. The time is
-/// near-linear.
-/// \throws Error limit_exceeded for more than 2^29 triangles.
+/// near-linear. \throws Error limit_exceeded for more than 2^29 triangles.
 [[nodiscard]] Rounds find_rounds(const Surfaces& surfaces, const Execution& execution = {});
 
 struct CentreLineOptions {
@@ -394,9 +369,8 @@ struct CentreLine {
 /// circles and cylinders seen from the side have an axis line. Coinciding ones share a cross or an axis line. There are
 /// no centre lines in perspective, nor for a circle or cylinder that is seen at an angle, is smaller than a third of
 /// the overshoot, or has less than a fifth of its outline drawn. Crosses of small circles overshoot by the radius, at
-/// least by a third of `overshoot`.
-/// `rounds` are the circles and cylinders of the drawing's surfaces. Lines are sorted by direction, then by position.
-/// \throws Error bad_argument for an overshoot out of range.
+/// least by a third of `overshoot`. `rounds` are the circles and cylinders of the drawing's surfaces. Lines are sorted
+/// by direction, then by position. \throws Error bad_argument for an overshoot out of range.
 [[nodiscard]] std::vector<CentreLine> centre_lines_of(const Rounds& rounds, const Drawing& drawing,
                                                       const Strokes& strokes, const CentreLineOptions& options = {});
 

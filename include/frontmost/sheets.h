@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Drawings on paper: figures (vector pictures of polygons), pages in millimetres and their files, lettering, and
-// sheets.
+// Drawings on paper: figures (vector pictures of polygons), pages in millimetres and their files, lettering, sheets.
 //
 //   draw_figure() --> Figure ----+
 //   draw_sheet() --> Sheet ------+--> Page --save()--> SVG, PDF, DXF, JSON
 //   paths of one's own ----------+
 //
-// A Figure is the vector counterpart of an Image. It keeps millions of polygons in three arrays; the elements of each
-// array name a range of the next one:
+// A Figure is the vector counterpart of an Image: three arrays, of which the elements name a range of the next one:
 //
 //   shapes   | shape 0           | shape 1 | ...    filled in this order, each with one colour
 //   rings    | ring 0  | ring 1  | ring 2  | ...    the outlines of a shape: its rim, its holes, its other parts
@@ -40,8 +38,8 @@ struct FigureShape {
   glm::u8vec4 color{0};
   std::uint32_t ring_count = 0;
   std::size_t first_ring = 0;
-  /// Number of the blend group, ascending. The translucent shapes of one blend group have the same opacity. They are
-  /// filled opaquely, one after the other, on a transparent ground; the result is then blended with that opacity.
+  /// Ascending. The translucent shapes of one blend group have the same opacity. They are filled opaquely, one after
+  /// the other, on a transparent ground; the result is then blended with that opacity.
   std::uint32_t blend_group = 0;
 };
 /// A picture of polygons: paths to be filled in order. Pixels of the view, x right, y down.
@@ -71,11 +69,11 @@ struct FigureOptions {
 /// \returns a picture of polygons with the colours of shade() for the same view, including textures, shadows and smooth
 /// normals; holes of alpha mode MASK are cut out. Polygons are in painting order, exact where surfaces pass through
 /// each other. Each polygon extends up to 4 pixels under those painted over it (trapping, as printers call it), so
-/// viewers show no hairlines between neighbours. `visible` has one sample a pixel.
-/// O(n log n) in the number of polygons, and the pixels that they cover. The same for any number of threads.
-/// (M. Newell, R. Newell, T. Sancha. A Solution to the Hidden Surface Problem. 1972.)
-/// \throws Error bad_argument for several samples a pixel or options out of range; unsupported for a shown environment;
-/// limit_exceeded for more than FigureOptions::most_polygons, or too many intersections or overlaps of triangles.
+/// viewers show no hairlines between neighbours. `visible` has one sample a pixel. O(n log n) in the number of
+/// polygons, and the pixels that they cover. The same for any number of threads. (M. Newell, R. Newell, T. Sancha. A
+/// Solution to the Hidden Surface Problem. 1972.) \throws Error bad_argument for several samples a pixel or options out
+/// of range; unsupported for a shown environment; limit_exceeded for more than FigureOptions::most_polygons, or too
+/// many intersections or overlaps of triangles.
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const ShadeInput& input, const FigureOptions& options = {},
                                  const Execution& execution = {});
 [[nodiscard]] Figure draw_figure(const Surfaces& surfaces, const Visible& visible, const FigureOptions& options = {},
@@ -89,8 +87,7 @@ struct FigureOptions {
 
 // Pages: pen lines and filled polygons in millimetres, written as SVG, PDF, DXF or JSON.
 //
-// A page has x to the right and y down, from its top left corner. Later elements lie over earlier ones. Colours are
-// sRGB, as in the files.
+// A page has x to the right and y down, from its top left corner. Later elements lie over earlier ones.
 
 /// sRGB and opacity, 0 to 255 each; not premultiplied.
 struct PageColor {
@@ -110,9 +107,7 @@ struct Pen {
 struct PagePath {
   std::uint32_t first = 0, count = 0;
   bool is_closed = false;  ///< the last point is joined to the first one
-  /// True: the path belongs to the path before it, of the same group, and is filled together with it: a hole, or
-  /// another part.
-  bool is_part = false;
+  bool is_part = false;    ///< a hole, or another part, of the path before it, and filled together with it
 };
 
 /// Paths drawn with one pen, one after the other. One group of millions of paths is faster than many groups.
@@ -145,8 +140,8 @@ struct Page {
 
 /// Turns each dash of a page into a path of its own, for plotters, which cannot draw dashes by themselves. Patterns run
 /// along whole paths. Between corners of 25 degrees or more, a pattern is stretched so that both ends are drawn (ISO
-/// 128-2). Fills are unchanged. O(points + dashes). \throws Error as validate() does, limit_exceeded for more than 20
-/// million dashes, and cancelled.
+/// 128-2). Fills are unchanged. O(points + dashes). \throws Error as validate() does; limit_exceeded for more than 20
+/// million dashes.
 [[nodiscard]] Page with_real_dashes(Page page, const Execution& execution = {});
 
 enum class PageFormat : std::uint8_t { svg, pdf, dxf, json };
@@ -160,16 +155,16 @@ void validate(const Page& page);
 
 // How pages become files:
 //
-//   SVG    Sizes in millimetres, one user unit to the millimetre. Layers and groups are named as in Inkscape; paths of
-//          one pen share elements. No style sheets, clip paths, masks or transforms.
+//   SVG    Sizes in millimetres, one user unit to the millimetre. Layers and groups are named as in Inkscape. No style
+//          sheets, clip paths, masks or transforms.
 //   PDF    Version 1.5, compressed. Layers are optional content, groups with an opacity transparency groups. Version
 //          1.6 with a scaled user unit if a side exceeds 5080 mm.
 //   DXF    AutoCAD release 12, in millimetres ($INSUNITS), y up from the page's lower left corner. Lines only: LINE,
-//          POLYLINE, ARC, CIRCLE and POINT, without widths. Each group becomes a layer, named "2_VISIBLE-WHEEL" after
-//          page layer and group; from a thousand groups on, each page layer becomes one. Names have at most 31 letters,
-//          digits and -. A layer has the pen's colour; if the pen is black, the digit that begins the page layer's name
-//          decides. Line types are HIDDEN, CENTER and PHANTOM for one, two and more dashes in a period, with "2" or
-//          "X2" appended if the dashes are much shorter or longer; pens that share a name get the first pen's dashes.
+//          POLYLINE, ARC, CIRCLE and POINT, without widths. Each group is a layer, "2_VISIBLE-WHEEL" after layer and
+//          group; from a thousand groups on, each page layer is one. Names have at most 31 letters, digits and -. A
+//          layer has the pen's colour; a black pen's depends on the digit that begins the page layer's name. Line types
+//          are HIDDEN, CENTER and PHANTOM for one, two and more dashes in a period, with "2" or "X2" appended if much
+//          shorter or longer; pens that share a name get the first pen's dashes.
 //   JSON   All of the page, unchanged.
 
 /// Writes a page, whole or not at all. Coordinates are rounded to 0.001 mm, so paths that share a point share it in the
@@ -179,9 +174,8 @@ void validate(const Page& page);
 void save(const Page& page, const std::string& path, std::optional<PageFormat> format = std::nullopt,
           const Execution& execution = {});
 
-/// Writes several pages, which may differ in size, into one PDF. Layers of one name are switched together; the title is
-/// that of the first page. \throws Error as for one page; bad_argument without a page; unsupported for several pages in
-/// other formats.
+/// Writes several pages, of any sizes, into one PDF. Layers of one name are switched together; the title is that of the
+/// first page. \throws Error as for one page; bad_argument without a page; unsupported for several in other formats.
 void save(std::span<const Page> pages, const std::string& path, std::optional<PageFormat> format = std::nullopt,
           const Execution& execution = {});
 
@@ -201,8 +195,8 @@ void save(const Figure& figure, const std::string& path, std::optional<PageForma
 
 // Lettering: text as strokes of one pen, the same in every format and on every machine.
 //
-// Fonts of page formats look different in every viewer, and plotters have none. Text therefore becomes paths of lines
-// and arcs. It is placed by one of nine points of the box around its capitals:
+// Fonts look different in every viewer, and plotters have none. Text therefore becomes paths of lines and arcs. It is
+// placed by one of nine points of the box around its capitals:
 //
 //   left         centre         right
 //    x-------------x-------------x     top: upper edge of capitals
@@ -231,17 +225,14 @@ struct TextStyle {
 /// as high as a capital. Blanks have no path. O(text).
 void add_text(PageGroup& group, std::string_view text, const glm::dvec2& at, const TextStyle& style = {});
 
-/// Width of a text in millimetres, from the left edge of its first character to the right edge of the last one,
-/// including the pen's width; 0 if the text has no characters.
+/// Millimetres from the left edge of the first character to the right edge of the last, with their pen; 0 without any.
 [[nodiscard]] double text_width(std::string_view text, double height = 3.5);
 
 // Views of a sheet: strokes, hatching and centre lines at their places on a page, with the pens of drawing standards.
+// draw_sheet() performs all of these steps; call them yourself to lay out pages of your own.
 //
 //   Drawing --chain_strokes()--> Strokes ----+
 //   hatch(), stipple(), centre_lines_of() ----+--> SheetView --page_of()--> Page --save()--> file
-//                                                  a place and a scale
-//
-// draw_sheet() performs all of these steps; call them yourself to lay out pages of your own.
 
 /// Pens by the kind of line.
 struct LinePens {
@@ -321,8 +312,7 @@ struct Paper {
 /// Where views stand around the front view. The title block shows the symbol of the method (ISO 5456-2).
 enum class ProjectionMethod : std::uint8_t { none, first_angle, third_angle };
 
-/// Contents of the fields of a title block, in UTF-8; empty fields stay empty. Text too long for its field at 1.8 mm is
-/// written smaller.
+/// Contents of the fields of a title block, in UTF-8. Text too long for its field at 1.8 mm is written smaller.
 struct TitleBlock {
   std::string title{};   ///< up to two lines
   std::string number{};  ///< number of the drawing
@@ -387,8 +377,7 @@ struct SheetOptions {
   std::optional<bool> standard_scale = std::nullopt;
   /// The unit of the model's numbers, in place of the file's. None: SceneSource::metres_per_unit, or else 1.
   std::optional<double> millimetres_per_unit = std::nullopt;
-  /// Unit of dimensions and title block: inches with three decimals, or millimetres with two. None: inches if the
-  /// model's unit is the inch.
+  /// Unit of dimensions and title block: inches with three decimals, or millimetres with two. None: as the model's.
   std::optional<bool> in_inches = std::nullopt;
   /// A frame with this title block. Scale, unit, paper and projection are filled in.
   std::optional<TitleBlock> title_block = std::nullopt;
@@ -401,8 +390,7 @@ struct SheetOptions {
   bool casts_shadows = true;
 
   // The camera.
-  /// Pixels of a view, 0.001 to 1000: greatest distance of triangles from curved surfaces. None: 0.2, or more if that
-  /// would take millions of triangles.
+  /// Pixels of a view, 0.001 to 1000: greatest distance of triangles from curved surfaces. None: 0.2, or what is quick.
   std::optional<double> tessellation_error = std::nullopt;
   /// For named views: clipping planes in place of those that enclose the model.
   std::optional<double> near = std::nullopt, far = std::nullopt;
@@ -413,8 +401,7 @@ struct SheetOptions {
 /// A drawn view of a sheet.
 struct DrawnView {
   std::string name;  ///< for example "front"; "A-A" for a section; empty if the view was given
-  /// The surfaces whose triangles `drawing` refers to: those of the caller, which must still exist, or surfaces made
-  /// for this view, if it shows curved or cut objects.
+  /// The surfaces of `drawing`: the caller's, which must still exist, or those made for a view of curved or cut ones.
   std::shared_ptr<const Surfaces> surfaces;
   std::shared_ptr<const Section> section;  ///< null if nothing was cut
   Drawing drawing;
@@ -432,22 +419,18 @@ struct Sheet {
   std::size_t prisms = 0;        ///< number of diameters of cylinders of 7 to 17 sides, which count as polygons
 };
 
-/// \throws Error bad_argument for values out of range, and for options that exclude or need each other. The message
-/// begins with the name of the field.
+/// \throws Error bad_argument, with the field, for values out of range, and options that exclude or need each other.
 void validate(const SheetOptions& options);
 
 /// Draws the named views and sections of `options` on one page. Layers are those of page_of(), then "9 sections", "7
 /// dimensions" and "8 frame". A watch sees the stages "views", "rounds", "layout", "tones" and "page", and those of the
 /// functions called. The bytes are the same for any number of threads.
-/// \throws Error as validate() does, and for options without a view; bad_argument for a plane that misses the model;
-/// limit_exceeded if the page is too small, with a hint at what would fit; as draw_lines(), hatch(), stipple() and
-/// tessellate() do.
+/// \throws Error as validate(), draw_lines(), hatch(), stipple() and tessellate() do; bad_argument for options without
+/// a view, and for a plane that misses the model; limit_exceeded if the page is too small, with what would fit.
 [[nodiscard]] Sheet draw_sheet(const Surfaces& surfaces, const SheetOptions& options, const Execution& execution = {});
 
-/// Draws one view on a page of its own; a view in perspective has no scale. Lines are as fine as the view's pixels:
-/// 3840 x 2160 suffice for all paper.
-/// \throws Error as draw_sheet() does; bad_argument for options of named views, and for a scale or centre lines in
-/// perspective.
+/// Draws one view on a page of its own. Lines are as fine as its pixels: 3840 x 2160 suffice for all paper. \throws
+/// Error as draw_sheet() does; bad_argument for options of named views, and for a scale or centre lines in perspective.
 [[nodiscard]] Sheet draw_view(const Surfaces& surfaces, const View& view, const SheetOptions& options = {},
                               const Execution& execution = {});
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps from visible polygons in painting order to a figure. Each step can be tested, or left out, separately. All
-// keep the painting order of the shapes, unless their documentation says otherwise.
+// The steps from visible polygons in painting order to a figure. Each can be tested, or left out, separately.
 //
 //    VisibleParts --color_order()--> one shape for each colour of each polygon
 //                 --merge_neighbours()--> fewer shapes: neighbours of one colour are merged
@@ -63,8 +62,7 @@ struct ColoredOrder {
   }
 };
 
-/// Whether a triangle hides what is behind it. Before the holes of textures are cut out, a triangle with holes does
-/// not.
+/// Whether a triangle hides what is behind it. A triangle with holes does once its holes are cut out.
 [[nodiscard]] inline bool is_opaque(const Surfaces& surfaces, PrimitiveId id, bool holes_are_cut_out = false) {
   const PrimitiveSource source = surfaces.source(id);
   const Scene& scene = surfaces.scene();
@@ -91,11 +89,10 @@ struct ColoredOrder {
 /// one thread.
 [[nodiscard]] ColoredOrder merge_neighbours(const ColoredOrder& colored, const Execution& execution = {});
 
-/// Gathers translucent neighbours of one opacity in blend groups, so that no hairlines show between them. A group is
-/// painted as if it were opaque, with traps, and then composited as a whole. The picture stays the same: shapes change
-/// places only where neither is over the other. Overlapping surfaces form separate groups. A surface that winds over
-/// and under itself forms several groups, with hairlines between them. O(n log n) in polygons and overlapping pairs, on
-/// one thread. With more than 16 million overlapping pairs of shapes at or above translucent ones, the figure stays
+/// Gathers translucent neighbours of one opacity in blend groups, so that no hairlines show between them. The picture
+/// stays the same: shapes change places only where neither is over the other. A surface that winds over and under
+/// itself has several groups, with hairlines between these. O(n log n) in polygons and overlapping pairs, on one
+/// thread. With more than 16 million overlapping pairs of shapes at or above translucent ones, the figure stays
 /// unchanged.
 [[nodiscard]] ColoredOrder gather_blend_groups(ColoredOrder colored, const Execution& execution = {});
 

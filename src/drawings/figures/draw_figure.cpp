@@ -3,9 +3,8 @@
 //
 //    surfaces --painter()--> order --visible_parts()--> parts --colours, shapes, outlines (colored_order.h)--> Figure
 //
-// Occluders are determined twice, with different results. Before colouring, a triangle whose texture has holes hides
-// nothing, because its polygon still covers the holes. After colouring, the holes are cut out, and the rest of the
-// triangle hides what is behind.
+// Occluders are determined twice. Before colouring, a triangle whose texture has holes hides nothing, because its
+// polygon still covers the holes. After colouring, the rest of the triangle hides what is behind.
 #include <algorithm>
 
 #include "base/parallel.h"
@@ -50,50 +49,31 @@ std::vector<ScreenPolygon> polygons_in_groups(const ColoredOrder& colored, const
   return polygons;
 }
 
-/// Consecutive shapes of one blend group.
-struct PaintedGroup {
-  std::size_t begin, end;  ///< range of ColoredOrder::polygons
-  bool has_traps;          ///< the group is translucent and has several shapes
-};
-
-std::vector<PaintedGroup> groups_of(const ColoredOrder& colored) {
-  std::vector<PaintedGroup> groups;
-  const ColoredShape* first = nullptr;
-  for (const ColoredShape& shape : colored.shapes) {
-    const std::size_t end = shape.first_polygon + shape.polygon_count;
-    if (first && first->blend_group == shape.blend_group) {
-      groups.back() = {groups.back().begin, end, shape.color.a < 255};
-    } else {
-      groups.push_back({shape.first_polygon, end, false});
-      first = &shape;
-    }
-  }
-  return groups;
-}
-
 /// The traps of each polygon. An opaque polygon has traps under later polygons, a translucent one under other polygons
 /// of its blend group. A trap may also lie under polygons of the same shape, and under parts of the same primitive that
 /// have the same colour.
 TrapList find_traps(const ColoredOrder& colored, double width, const Occluders& occluders, const Execution& execution) {
   std::vector<ScreenPolygon> polygons = polygons_in_groups(colored, occluders);
   TrapList opaque = make_traps(polygons, colored.view, width, execution);
-  const std::vector<PaintedGroup> groups = groups_of(colored);
-  if (std::none_of(groups.begin(), groups.end(), [](const PaintedGroup& group) { return group.has_traps; }))
-    return opaque;
+  const std::vector<ColoredShape>& shapes = colored.shapes;
+  const auto is_translucent = [](const ColoredShape& shape) { return shape.color.a < 255; };
+  if (std::none_of(shapes.begin(), shapes.end(), is_translucent)) return opaque;
   for (ScreenPolygon& polygon : polygons) polygon.is_occluder = true;
   TrapList all;
-  for (const PaintedGroup& group : groups) {
-    const std::span<const ScreenPolygon> members(polygons.data() + group.begin, group.end - group.begin);
-    const TrapList own = group.has_traps ? make_traps(members, colored.view, width, execution) : TrapList();
-    for (std::size_t i = group.begin; i < group.end; ++i)
-      group.has_traps ? all.add_polygon(own, i - group.begin) : all.add_polygon(opaque, i);
+  for (std::size_t first = 0, next; first < shapes.size(); first = next) {
+    for (next = first + 1; next < shapes.size() && shapes[next].blend_group == shapes[first].blend_group;) ++next;
+    const std::size_t begin = shapes[first].first_polygon;
+    const std::size_t end = shapes[next - 1].first_polygon + shapes[next - 1].polygon_count;
+    const bool has_traps = next > first + 1 && is_translucent(shapes[next - 1]);
+    const std::span<const ScreenPolygon> members(polygons.data() + begin, end - begin);
+    const TrapList own = has_traps ? make_traps(members, colored.view, width, execution) : TrapList();
+    for (std::size_t i = begin; i < end; ++i) has_traps ? all.add_polygon(own, i - begin) : all.add_polygon(opaque, i);
   }
   return all;
 }
 
-/// The distance in pixels that a polygon reaches under its neighbours, so that viewers that blend edges show no
-/// hairlines. Lines around polygons are no alternative, because they widen every shape, in poppler by much more than
-/// their width.
+/// Pixels that a polygon reaches under its neighbours, against hairlines in viewers that blend edges. Lines around
+/// polygons would widen everything, in poppler by much more than their width.
 constexpr double kTrap = 4;
 
 Occluders occluders_of(const Surfaces& surfaces, const FigureOptions& options, bool holes_are_cut_out) {
@@ -102,35 +82,23 @@ Occluders occluders_of(const Surfaces& surfaces, const FigureOptions& options, b
       [&surfaces, holes_are_cut_out](PrimitiveId id) { return is_opaque(surfaces, id, holes_are_cut_out); });
 }
 
-/// Whether any polygon reaches beyond the picture. Near the eye, polygons are millions of pixels wide, and all these
-/// pixels would be sampled.
-bool reaches_beyond_picture(const PaintOrder& order) {
-  const glm::dvec2 size(order.view.width, order.view.height);
-  return std::any_of(order.corners.begin(), order.corners.end(), [&](const PaintCorner& corner) {
-    return !(corner.at.x > -1 && corner.at.y > -1 && corner.at.x < size.x + 1 && corner.at.y < size.y + 1);
-  });
-}
-
-/// The parts of all polygons within the picture, hidden or not.
-VisibleParts all_parts(PaintOrder order, const Execution& execution) {
-  if (reaches_beyond_picture(order)) return visible_parts(order, Occluders::none(), execution);
+VisibleParts parts_of(const Surfaces& surfaces, const View& view, const FigureOptions& options,
+                      const Execution& execution) {
+  if (options.visible_only) {
+    const Occluders occluders = occluders_of(surfaces, options, false);
+    return visible_parts(painter(surfaces, view, {.occluders = occluders}, execution), occluders, execution);
+  }
+  PaintOrder order = painter(surfaces, view, {}, execution);
+  // Whether any polygon reaches beyond the picture. Near the eye, polygons are millions of pixels wide, and all these
+  // pixels would be sampled.
+  const auto is_outside = [&](const PaintCorner& corner) {
+    return !(corner.at.x > -1 && corner.at.y > -1 && corner.at.x < view.width + 1 && corner.at.y < view.height + 1);
+  };
+  if (std::any_of(order.corners.begin(), order.corners.end(), is_outside))
+    return visible_parts(order, Occluders::none(), execution);
   return {order.view, std::move(order.polygons), std::move(order.corners)};
 }
 
-VisibleParts parts_of(const Surfaces& surfaces, const View& view, const FigureOptions& options,
-                      const Execution& execution) {
-  if (!options.visible_only) return all_parts(painter(surfaces, view, {}, execution), execution);
-  const Occluders occluders = occluders_of(surfaces, options, false);
-  return visible_parts(painter(surfaces, view, {.occluders = occluders}, execution), occluders, execution);
-}
-
-void check_count(std::size_t polygons, const FigureOptions& options) {
-  if (polygons <= options.most_polygons) return;
-  throw Error(ErrorCode::limit_exceeded, "figure",
-              std::to_string(polygons) + " polygons, more than " + std::to_string(options.most_polygons));
-}
-
-/// Draws a figure with the data that earlier pictures prepared.
 Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const FigureOptions& options,
                  const Execution& execution) {
   const Surfaces& surfaces = scene.surfaces;
@@ -143,7 +111,10 @@ Figure figure_of(shading::PreparedScene& scene, const ShadeInput& input, const F
   if (!(options.tolerance >= 0 && options.tolerance <= 255))
     throw Error(ErrorCode::bad_argument, "figure: tolerance", "must be 0 to 255");
   const VisibleParts parts = parts_of(surfaces, input.first().view, options, execution);
-  check_count(parts.polygons.size(), options);
+  if (parts.polygons.size() > options.most_polygons)
+    throw Error(
+        ErrorCode::limit_exceeded, "figure",
+        std::to_string(parts.polygons.size()) + " polygons, more than " + std::to_string(options.most_polygons));
   ColoredOrder colored = color_order(scene, input, parts, options, execution);
   if (options.merges_neighbours) colored = merge_neighbours(colored, execution);
   colored = gather_blend_groups(std::move(colored), execution);

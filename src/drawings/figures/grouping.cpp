@@ -4,8 +4,7 @@
 //    order    1  2  3  4  5        2 and 5 share a side and have one colour. If neither 3 nor 4 covers
 //    colour   a  b  a  c  b        a part of 2, both can be painted together where 5 is.
 //
-// A shape may be painted at the place of its last polygon if nothing between its polygons in the order covers any of
-// them. So merge_neighbours() unites only polygons that no later polygon covers. Shared sides are found in a SideNet.
+// merge_neighbours() unites only polygons that no later one covers: these may be painted at the place of the last.
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -129,30 +128,23 @@ std::vector<bool> find_uncovered(const ColoredOrder& order, const Execution& exe
   return uncovered;
 }
 
-std::uint32_t code_of(const glm::u8vec4& c) {
-  return std::uint32_t(c.r) << 24 | std::uint32_t(c.g) << 16 | std::uint32_t(c.b) << 8 | c.a;
-}
-
-/// For each polygon, the number of its shape, and whether no later polygon covers a part of it.
-struct Polygons {
-  std::vector<std::uint32_t> shapes;
-  std::vector<bool> uncovered;
-};
-
 /// Sets of polygons that are painted together. The leader of a set is its last polygon, in whose place the set is
 /// painted.
 using PolygonSets = DisjointSets<std::greater<>>;
 
 /// Joins uncovered polygons of one colour that share a part of a side, and consecutive uncovered polygons of one shape.
-PolygonSets joined(const ColoredOrder& colored, const Polygons& polygons, const Execution& execution) {
-  const auto& [shapes, uncovered] = polygons;
+PolygonSets joined(const ColoredOrder& colored, const std::vector<std::uint32_t>& shapes,
+                   const std::vector<bool>& uncovered, const Execution& execution) {
   PolygonSets sets(uncovered.size());
   for (std::uint32_t i = 1; i < uncovered.size(); ++i)
     if (shapes[i] == shapes[i - 1] && uncovered[i] && uncovered[i - 1]) sets.join(i, i - 1);
   std::vector<std::uint32_t> members;
   for (std::uint32_t i = 0; i < uncovered.size(); ++i)
     if (uncovered[i]) members.push_back(i);
-  const auto code = [&](std::uint32_t i) { return code_of(colored.shapes[polygons.shapes[i]].color); };
+  const auto code = [&](std::uint32_t i) {
+    const glm::u8vec4& c = colored.shapes[shapes[i]].color;
+    return std::uint32_t(c.r) << 24 | std::uint32_t(c.g) << 16 | std::uint32_t(c.b) << 8 | c.a;
+  };
   std::stable_sort(members.begin(), members.end(), [&](auto a, auto b) { return code(a) < code(b); });
   SideNet net;
   for (std::size_t begin = 0, end; begin < members.size(); begin = end) {
@@ -170,12 +162,6 @@ PolygonSets joined(const ColoredOrder& colored, const Polygons& polygons, const 
 /// Two nodes. A node is a shape that is painted as a whole; nodes are numbered in the original order.
 using NodePair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Nodes in painting order, and the blend group of each, ascending. Translucent nodes of a group have the same opacity,
-/// and none is over another. A group with opaque nodes has no translucent ones.
-struct BlendOrder {
-  std::vector<std::uint32_t> nodes, groups;
-};
-
 /// The most pairs of nodes, which take 128 MB. With more pairs, the order stays unchanged.
 constexpr std::size_t kMostPairs = std::size_t(1) << 24;
 /// Limits on overlap tests; with more, the order stays unchanged.
@@ -186,9 +172,8 @@ void sort_out(std::vector<NodePair>& pairs) {
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
 }
 
-/// The pairs (below, above) of overlapping shapes in which the lower shape is translucent, or lies over a translucent
-/// shape directly or indirectly. Other pairs are not needed, because opaque shapes over no translucent one are painted
-/// first, in their order. None if there are too many pairs.
+/// The pairs in which one shape is over another, except opaque shapes that are over no translucent one, directly or
+/// indirectly: these go first. None if there are too many pairs.
 std::optional<std::vector<NodePair>> find_over(const ColoredOrder& colored, const Execution& execution) {
   const std::vector<std::uint32_t> shape_of = colored.shapes_of_polygons();
   const Overlaps overlaps(colored);
@@ -252,8 +237,7 @@ NodeLists lists_of(const std::vector<NodePair>& pairs, std::size_t count) {
 /// translucent neighbours that may be painted next. O(n log n) in the number of nodes and pairs.
 class BlendSorter {
  public:
-  /// In a pair of `over`, the second node is painted after the first. `beside` has the translucent neighbours of one
-  /// opacity, in both directions. Both lists are sorted and unique.
+  /// `over`: the second is painted after the first. `beside`: translucent pairs of one opacity, in both directions.
   BlendSorter(std::vector<std::uint8_t> opacities, const std::vector<NodePair>& over,
               const std::vector<NodePair>& beside)
       : opacities_(std::move(opacities)),
@@ -268,15 +252,23 @@ class BlendSorter {
     std::iota(next_in_patch_.begin(), next_in_patch_.end(), 0u);
   }
 
-  [[nodiscard]] BlendOrder sort() {
+  /// Nodes in painting order, each with its blend group; groups ascend. Translucent nodes of a group have the same
+  /// opacity, and none is over another. A group with opaque nodes has no translucent ones.
+  [[nodiscard]] std::vector<NodePair> sort() {
     for (std::uint32_t node = 0; node < below_.size(); ++node)
       if (below_[node] == 0) make_ready(node);
     while (!opaque_.empty() || !by_open_sides_.empty()) {
       ++group_;
-      if (opaque_.empty())
+      if (opaque_.empty()) {
         paint_patches();
-      else
-        paint_opaque();
+        continue;
+      }
+      while (!opaque_.empty()) {
+        const std::uint32_t node = opaque_.top();
+        opaque_.pop();
+        paint(node);
+        release(node);
+      }
     }
     return std::move(order_);
   }
@@ -307,15 +299,6 @@ class BlendSorter {
     by_open_sides_.insert({open, patch});
   }
 
-  void paint_opaque() {
-    while (!opaque_.empty()) {
-      const std::uint32_t node = opaque_.top();
-      opaque_.pop();
-      paint(node);
-      release(node);
-    }
-  }
-
   /// Paints all patches without open sides or, if there are none, the patch with the fewest open sides.
   void paint_patches() {
     std::vector<std::uint32_t> taken;
@@ -340,8 +323,7 @@ class BlendSorter {
 
   void paint(std::uint32_t node) {
     states_[node] = State::painted;
-    order_.nodes.push_back(node);
-    order_.groups.push_back(group_);
+    order_.emplace_back(node, group_);
   }
   void release(std::uint32_t node) {
     for (const std::uint32_t other : over_[node])
@@ -357,7 +339,7 @@ class BlendSorter {
   std::vector<std::size_t> open_sides_;       ///< by patch: number of pairs of a node in the patch and a waiting node
   std::vector<std::uint32_t> next_in_patch_;  ///< the nodes of each patch form a ring
   std::set<std::pair<std::size_t, std::uint32_t>> by_open_sides_;
-  BlendOrder order_;
+  std::vector<NodePair> order_;
   std::uint32_t group_ = 0;
 };
 
@@ -366,22 +348,22 @@ class BlendSorter {
 ColoredOrder merge_neighbours(const ColoredOrder& colored, const Execution& execution) {
   const std::size_t count = colored.polygons.size();
   const IeeeScope ieee;
-  const Polygons polygons{colored.shapes_of_polygons(), find_uncovered(colored, execution)};
-  PolygonSets sets = joined(colored, polygons, execution);
+  const std::vector<std::uint32_t> shapes = colored.shapes_of_polygons();
+  const std::vector<bool> uncovered = find_uncovered(colored, execution);
+  PolygonSets sets = joined(colored, shapes, uncovered, execution);
   std::vector<std::uint32_t> places(count), order(count);
   for (std::uint32_t i = 0; i < count; ++i) places[i] = sets.leader_of(i);
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(),
             [&](auto a, auto b) { return std::tie(places[a], a) < std::tie(places[b], b); });
   const auto are_one = [&](std::uint32_t a, std::uint32_t b) {
-    return places[a] == places[b] ||
-           (polygons.shapes[a] == polygons.shapes[b] && !polygons.uncovered[a] && !polygons.uncovered[b]);
+    return places[a] == places[b] || (shapes[a] == shapes[b] && !uncovered[a] && !uncovered[b]);
   };
   ColoredOrder merged;
   merged.view = colored.view;
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = order[k];
-    if (k == 0 || !are_one(order[k - 1], i)) merged.begin_shape(colored.shapes[polygons.shapes[i]].color);
+    if (k == 0 || !are_one(order[k - 1], i)) merged.begin_shape(colored.shapes[shapes[i]].color);
     merged.add_polygon(colored.polygons[i].id, colored.corners_of(colored.polygons[i]));
   }
   return merged;
@@ -395,13 +377,12 @@ ColoredOrder gather_blend_groups(ColoredOrder colored, const Execution& executio
   for (const ColoredShape& shape : colored.shapes) opacities.push_back(shape.color.a);
   const std::optional<std::vector<NodePair>> over = find_over(colored, execution);
   if (!over) return colored;
-  const BlendOrder order = BlendSorter(std::move(opacities), *over, find_beside(colored, execution)).sort();
   ColoredOrder made;
   made.view = colored.view;
-  for (std::size_t k = 0; k < order.nodes.size(); ++k) {
-    const ColoredShape& shape = colored.shapes[order.nodes[k]];
+  for (const auto& [node, group] : BlendSorter(std::move(opacities), *over, find_beside(colored, execution)).sort()) {
+    const ColoredShape& shape = colored.shapes[node];
     made.begin_shape(shape.color);
-    made.shapes.back().blend_group = order.groups[k];
+    made.shapes.back().blend_group = group;
     for (const PaintPolygon& polygon : colored.polygons_of(shape))
       made.add_polygon(polygon.id, colored.corners_of(polygon));
   }

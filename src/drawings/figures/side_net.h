@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the outlines of adjacent polygons, without the sides that two polygons share.
+// The outlines of adjacent polygons, without the sides that two of them share.
 //
-//    A ------------------ B           Corners are rounded to a grid. Two polygons below the side A-B have a corner C
-//    |         C          |           on that side. The side is split into A-C and C-B, so that neighbours have the
-//    +---------+----------+           same sides, in opposite directions. Shared sides are found by the numbers of
-//                                     their ends.
+//    A ------------------ B     Corners are rounded to a grid. A neighbour has a corner C on
+//    |         C          |     the side A-B, which becomes A-C and C-B. So each of the three
+//    |         |          |     polygons has the same sides as its neighbours, in opposite
+//    +---------+----------+     directions. Shared sides are found by their numbers.
 //
-// Points are sorted by rows of the picture, and by x within a row. Points on a side are found in the rows that the side
-// passes. The sides that are not shared form closed rings, because as many sides end at each point as begin there.
+// Points are sorted by rows of the picture, and by x within a row. The sides that are not shared form closed rings: as
+// many sides end at a point as begin there.
 #pragma once
 
 #include <algorithm>
@@ -20,9 +20,7 @@
 
 namespace frontmost::shading {
 
-/// Finds the sides that outlines share. Corners are rounded to 1/4096 pixel, and sides are split at corners of other
-/// outlines. So adjacent outlines have the same sides, in opposite directions. O(n log n) in the number of corners, if
-/// sides are short in comparison with the whole.
+/// O(n log n) in the number of corners, if sides are short in comparison with the whole.
 class SideNet {
  public:
   using Corner = painter_detail::TrappedCorner;
@@ -61,8 +59,7 @@ class SideNet {
     });
   }
 
-  /// Calls share(a, b) for each pair of outlines that share a side. If several outlines have the side in one direction,
-  /// they are paired in ascending order.
+  /// Calls share(a, b) for outlines that share a side. Where several coincide, they are paired in ascending order.
   template <class Share>
   void for_each_shared(const Share& share) const {
     for (std::size_t i = 0; i < sides_.size();) {
@@ -74,8 +71,12 @@ class SideNet {
   /// Calls keep(corners) for every closed ring of the sides that are not shared.
   template <class Keep>
   void for_each_ring(const Keep& keep) {
-    begin_rings();
-    while (next_ring()) keep(std::span<const Corner>(ring_));
+    leave_unshared();
+    for (std::size_t first = 0; first < left_.size(); ++first) {
+      if (is_used_[first]) continue;
+      walk_around(first);
+      keep(std::span<const Corner>(ring_));
+    }
   }
 
  private:
@@ -175,9 +176,9 @@ class SideNet {
     std::sort(between_.begin(), between_.end());
   }
 
-  void begin_rings() {
+  /// Sides in opposite directions cancel out, so equal numbers of both are dropped.
+  void leave_unshared() {
     left_.clear();
-    // Sides in opposite directions cancel out, so equal numbers of both are dropped.
     for (std::size_t i = 0; i < sides_.size();) {
       const Pairs pairs = pairs_at(i);
       for (std::size_t k = i + pairs.count(); k < pairs.turn; ++k) left_.push_back(sides_[k]);
@@ -188,27 +189,23 @@ class SideNet {
       return std::tie(a.from, a.to, a.outline) < std::tie(b.from, b.to, b.outline);
     });
     is_used_.assign(left_.size(), 0);
-    next_ = 0;
   }
 
   /// Finds the next ring. \returns whether there is one. As many sides end at each point as begin there, so every walk
   /// returns to its first point.
-  bool next_ring() {
-    while (next_ < left_.size() && is_used_[next_]) ++next_;
-    if (next_ == left_.size()) return false;
+  void walk_around(std::size_t first) {
     ring_.clear();
-    std::size_t side = next_;
+    std::size_t side = first;
     while (true) {
       is_used_[side] = 1;
       ring_.push_back({glm::dvec2(points_[left_[side].from]) / kUnits, left_[side].trap});
-      if (left_[side].to == left_[next_].from) break;
+      if (left_[side].to == left_[first].from) break;
       side = std::size_t(std::lower_bound(left_.begin(), left_.end(), left_[side].to,
                                           [](const Side& s, std::uint32_t point) { return s.from < point; }) -
                          left_.begin());
       while (is_used_[side]) ++side;
     }
     straighten();
-    return true;
   }
 
   /// Removes corners at which the ring does not turn.
@@ -234,7 +231,6 @@ class SideNet {
   std::vector<Side> sides_;  ///< sides between the same points are consecutive
   std::vector<Side> left_;   ///< sides that are not shared, sorted by first point
   std::vector<std::uint8_t> is_used_;
-  std::size_t next_ = 0;
   std::vector<Corner> ring_;
 };
 

@@ -1,10 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0
-// Ranks the cells of a torus so that, for any rank, the cells of lower rank are spread evenly (R. Ulichney. The
-// Void-and-Cluster Method for Dither Array Generation. 1993).
-//
-// A dot is repeatedly put into the largest gap; the order of dots is their rank. So one table serves for every
-// darkness. The table is made once for all threads. It is the same with every C library, because exponentials are
-// rounded to floats before they are added.
+// SPDX-License-Identifier: Apache-2.0 Ranks the cells of a torus so that, for any rank, the cells of lower rank are
+// spread evenly (R. Ulichney. The Void-and-Cluster Method for Dither Array Generation. 1993). A dot is repeatedly put
+// into the largest gap; the order of dots is their rank. So one table, made once for all threads, serves for every
+// darkness.
 #include "hatching/dot_grid.h"
 
 #include <array>
@@ -14,8 +11,8 @@ namespace {
 
 constexpr int cells_along = DotGrid::side, cell_count = cells_along * cells_along;
 
-/// For each cell, how much the taken cells around it crowd it. The loops are written so that compilers vectorize them;
-/// otherwise they take most of the time of a picture with few dots.
+/// For each cell, how much the taken cells around it crowd it. Compilers vectorize the loops; else they take most time
+/// of small pictures.
 class Torus {
  public:
   Torus() {
@@ -73,15 +70,12 @@ class Torus {
 };
 
 /// A random generator with the same numbers on every machine.
-class Shuffle {
- public:
+struct Shuffle {
+  std::uint64_t state = 1;
   std::uint32_t next() {
-    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
-    return std::uint32_t(state_ >> 33);
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return std::uint32_t(state >> 33);
   }
-
- private:
-  std::uint64_t state_ = 1;
 };
 
 std::vector<int> ranks() {

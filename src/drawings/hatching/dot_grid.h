@@ -23,8 +23,7 @@ class DotGrid {
   DotGrid(double spacing, double width);
   [[nodiscard]] static double cell_of(double spacing) { return spacing / 2; }
 
-  /// Calls visit(place along the row, brightness below which it has a dot) for the places in [low, high) within the
-  /// picture.
+  /// Calls visit(place along the row, brightness below which it has a dot) for the picture's places in [low, high).
   template <class Visit>
   void for_each(std::int32_t row, double low, double high, const Visit& visit) const {
     const double first = std::clamp(low / cell_ - 2, 0.0, double(columns_)),

@@ -1,25 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each line of a set, or row of dots, is intersected with every triangle that it passes. Then it is cut:
+// Each line of a set, or row of dots, is intersected with every triangle that it passes, in a segment in space with
+// both ends on the triangle's sides. Then it is cut:
 //
-//    eye's view     visible parts of the segment     an occluder grid and a cutter, as for edges
-//    normals        dark parts of these by the angle a quadratic function along each line
-//    light's view   lit parts of these               the same as for the eye
+//    eye's view     visible parts of the segment       an occluder grid and a cutter, as for edges
+//    normals        dark parts of these by the angle   a quadratic function along each line
+//    light's view   lit parts of these                 the same as for the eye
 //
-// Normals of a triangle are computed only if a line passes it. The pieces of one line are sorted along it and united
-// where they overlap or continue in the next triangle. A dot is drawn if the darkness at its place reaches the limit of
-// that place.
+// Brightness is the cosine of the angle between normal and light. Normals are smooth across edges that are no creases,
+// and are computed only if a line in the triangle is visible. The pieces of one line are sorted along it and united
+// where they overlap or continue in the next triangle. A dot is drawn if it is dark enough at its place.
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <tuple>
 
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "base/work_limit.h"
-#include "frontmost/lines.h"
 #include "hatching/dot_grid.h"
-#include "hatching/rows.h"
 #include "lines/hiding/hidden_parts.h"
 #include "lines/lists.h"
 #include "lines/strokes/parts.h"
@@ -28,6 +29,229 @@ namespace frontmost {
 namespace {
 
 using namespace lines_detail;
+
+/// A triangle that is hatched.
+struct HatchedTriangle {
+  std::uint32_t number;
+  glm::uvec3 vertices;
+  glm::dvec3 places[3];
+  glm::dvec3 in_eye[3];  ///< as Sight::in_eye()
+};
+
+/// A normal that is linear along a segment, from t = 0 to 1; not of unit length in between.
+struct NormalAlong {
+  glm::dvec3 from, to;
+
+  /// The cosine of the angle to a unit vector.
+  [[nodiscard]] double cosine_at(double t, const glm::dvec3& to_light) const {
+    const glm::dvec3 n = from + (to - from) * t;
+    const double length = glm::length(n);
+    return length > 0 ? glm::dot(n, to_light) / length : 0;
+  }
+};
+
+/// The segment of a line in a triangle. Each end lies between two corners, at a share t of the way from p to q.
+struct HatchSegment {
+  SightedEdge edge;
+  struct Share {
+    std::size_t p = 0, q = 0;
+    double t = 0;
+  } ends[2];
+
+  /// The normal, from those at the corners.
+  [[nodiscard]] NormalAlong normal(const std::array<glm::dvec3, 3>& corners) const {
+    const auto at = [&](const Share& end) { return corners[end.p] * (1 - end.t) + corners[end.q] * end.t; };
+    return {at(ends[0]), at(ends[1])};
+  }
+};
+
+/// Lines are numbered; number 0 is `HatchSet::offset` from the picture's corner.
+class HatchRows {
+ public:
+  HatchRows(const HatchSet& set, const View& view)
+      : size_(view.width, view.height),
+        // Sines differ between C libraries in their last bit, but not as floats.
+        direction_(glm::normalize(glm::dvec2(float(std::cos(set.angle)), -float(std::sin(set.angle))))),
+        across_(-direction_.y, direction_.x),
+        spacing_(set.spacing),
+        offset_(set.offset),
+        near_(view.projection.clip.near),
+        is_parallel_(view.projection.orthographic) {
+    const Projection& p = view.projection;
+    const glm::dvec2 scale(view.width / (p.right - p.left), -view.height / (p.top - p.bottom));
+    plane_ = {across_ * scale, -glm::dot(across_, scale * glm::dvec2(p.left, p.top))};
+    const glm::dvec2 reach = across_ * size_;
+    const double low = std::min(reach.x, 0.0) + std::min(reach.y, 0.0),
+                 high = std::max(reach.x, 0.0) + std::max(reach.y, 0.0);
+    picture_ = {std::int32_t(std::ceil((low - offset_) / spacing_)),
+                std::int32_t(std::floor((high - offset_) / spacing_))};
+  }
+
+  struct Range {
+    std::int32_t first = 0, last = -1;
+  };
+
+  /// The numbers of lines that may pass the triangle within the picture.
+  [[nodiscard]] Range range_of(const HatchedTriangle& triangle) const {
+    double low = 1e300, high = -1e300;
+    for (const glm::dvec3& corner : triangle.in_eye) {
+      if (!is_parallel_ && corner.z < near_) return picture_;
+      const double height = weighted_height(corner) / weight(corner);
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+    // One more on each side, because the division rounds; the signs in segment() decide. Clamped before the conversion.
+    const auto number = [&](double height) {
+      return std::clamp((height - offset_) / spacing_, picture_.first - 2.0, picture_.last + 2.0);
+    };
+    return {std::max(picture_.first, std::int32_t(std::ceil(number(low))) - 1),
+            std::min(picture_.last, std::int32_t(std::floor(number(high))) + 1)};
+  }
+
+  /// The segment of the line in the triangle. A vertex on the line counts as above, so that a line passes from triangle
+  /// to triangle at one place, to the bit.
+  [[nodiscard]] std::optional<HatchSegment> segment(const HatchedTriangle& triangle, std::int32_t line) const {
+    double heights[3];
+    for (int k = 0; k < 3; ++k)
+      heights[k] = weighted_height(triangle.in_eye[k]) - height_of(line) * weight(triangle.in_eye[k]);
+    HatchSegment segment;
+    glm::dvec3 places[2];
+    EndOn on[2];
+    int count = 0;
+    for (int k = 0; k < 3; ++k) {
+      int p = k, q = k == 2 ? 0 : k + 1;
+      if ((heights[p] >= 0) == (heights[q] >= 0)) continue;
+      // Computed from the lower vertex, for both triangles.
+      if (triangle.vertices[p] > triangle.vertices[q]) std::swap(p, q);
+      const double from_p = std::abs(heights[p]), t = from_p / (from_p + std::abs(heights[q]));
+      const glm::dvec3 &from = triangle.places[p], &to = triangle.places[q];
+      places[count] = place_between(from, to, t);
+      on[count] = {triangle.vertices[p], triangle.vertices[q]};
+      // A place at a vertex lies in all planes of that vertex.
+      if (places[count] == from) on[count][1] = on[count][0];
+      if (places[count] == to) on[count][0] = on[count][1];
+      segment.ends[count++] = {std::size_t(p), std::size_t(q), t};
+    }
+    if (count < 2 || places[0] == places[1]) return std::nullopt;
+    segment.edge = {places[0], places[1], on[0], on[1], {triangle.number, no_index}, slack_of(places[0], places[1])};
+    return segment;
+  }
+
+  /// The position along the line, in pixels, of a point on it.
+  [[nodiscard]] double along(const glm::dvec2& screen) const { return glm::dot(screen, direction_); }
+
+  /// The nearest position along the line within the picture.
+  [[nodiscard]] double within_picture(std::int32_t line, double along) const {
+    const glm::dvec2 start = point(line, 0);
+    for (int axis = 0; axis < 2; ++axis) {
+      if (direction_[axis] == 0) continue;
+      const double a = -start[axis] / direction_[axis], b = (size_[axis] - start[axis]) / direction_[axis];
+      along = std::clamp(along, std::min(a, b), std::max(a, b));
+    }
+    return along;
+  }
+
+  [[nodiscard]] glm::dvec2 point(std::int32_t line, double along) const {
+    return across_ * height_of(line) + direction_ * along;
+  }
+
+ private:
+  [[nodiscard]] double height_of(std::int32_t line) const { return offset_ + line * spacing_; }
+  [[nodiscard]] double weight(const glm::dvec3& in_eye) const { return is_parallel_ ? 1 : in_eye.z; }
+  /// The distance across the lines in pixels, times the weight.
+  [[nodiscard]] double weighted_height(const glm::dvec3& in_eye) const {
+    return glm::dot(plane_, {in_eye.x, in_eye.y, weight(in_eye)});
+  }
+
+  glm::dvec2 size_;
+  glm::dvec2 direction_, across_;  ///< unit length
+  double spacing_, offset_, near_;
+  bool is_parallel_;
+  glm::dvec3 plane_;
+  Range picture_;
+};
+
+/// Vertex normals of triangles, smooth across edges that are no creases.
+class CornerNormals {
+ public:
+  CornerNormals(const SeenMesh& seen, const Surfaces& surfaces, double crease_angle, const Execution& execution)
+      : mesh_(seen.mesh),
+        normals_(mesh_.triangles.size()),
+        surfaces_(surfaces),
+        cosine_(float(std::cos(crease_angle))),
+        corners_(corner_table(mesh_, execution)) {
+    for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) normals_[i] = normal_of(mesh_, i);
+  }
+
+  /// The unit normals at the vertices of a triangle, on the side from which it is counter-clockwise. Vertices with very
+  /// many triangles have the triangle's own normal. O(triangles at its vertices).
+  [[nodiscard]] std::array<glm::dvec3, 3> of(std::uint32_t triangle) const {
+    const glm::dvec3 own = unit_of(normals_[triangle]);
+    return {at(triangle, 0, own), at(triangle, 1, own), at(triangle, 2, own)};
+  }
+
+ private:
+  /// The tip of a cone with more sides is flat: its normal means nothing.
+  static constexpr std::size_t most_at_vertex = 256;
+
+  /// The mean by N. Max (Weights for Computing Vertex Normals from Facet Normals, 1999), exact on spheres.
+  [[nodiscard]] glm::dvec3 at(std::uint32_t triangle, int corner, const glm::dvec3& own) const {
+    const std::uint32_t vertex = mesh_.triangles[triangle][corner];
+    const std::span<const Corner> around = corners_[vertex];
+    if (around.size() > most_at_vertex) return own;
+    const std::uint32_t instance = surfaces_.source(mesh_.ids[triangle]).instance;
+    glm::dvec3 sum(0);
+    for (const Corner& one : around) {
+      const std::uint32_t other = one.triangle();
+      const glm::dvec3& normal = normals_[other];
+      const double cosine = glm::dot(unit_of(normal), own);
+      // Neighbours with the opposite winding are reversed.
+      if (other != triangle && (std::abs(cosine) < cosine_ || surfaces_.source(mesh_.ids[other]).instance != instance))
+        continue;
+      const glm::dvec3 &place = mesh_.positions[vertex], &next = mesh_.positions[one.next(mesh_)],
+                       &last = mesh_.positions[one.last(mesh_)];
+      const double weight = glm::dot(next - place, next - place) * glm::dot(last - place, last - place);
+      if (weight > 0) sum += normal * (std::copysign(1.0, cosine) / weight);
+    }
+    return unit_of(sum, own);
+  }
+
+  const WeldedMesh& mesh_;
+  Buffer<glm::dvec3> normals_;
+  const Surfaces& surfaces_;
+  const double cosine_;
+  const CornerTable corners_;
+};
+
+/// The intervals in which the cosine is less than `limit`, in order: at most three.
+void find_dark(const NormalAlong& normal, const glm::dvec3& to_light, double limit, std::vector<Interval>& dark) {
+  dark.clear();
+  // (N.L)^2 = limit^2 N.N is a quadratic equation; its roots are where N.L = +-limit |N|.
+  const glm::dvec3 step = normal.to - normal.from;
+  const double p = glm::dot(normal.from, to_light), q = glm::dot(step, to_light), square = limit * limit;
+  const double a = q * q - square * glm::dot(step, step), b = p * q - square * glm::dot(normal.from, step),
+               c = p * p - square * glm::dot(normal.from, normal.from);
+  double cuts[4] = {0, 1, 1, 1};
+  int count = 1;
+  const auto cut_at = [&](double t) {
+    if (t > 0 && t < 1) cuts[count++] = t;
+  };
+  if (const double discriminant = b * b - a * c; discriminant > 0) {
+    // Each root has two forms; the one without cancellation is used.
+    const double sum = -b - std::copysign(std::sqrt(discriminant), b);
+    if (a != 0) cut_at(sum / a);
+    if (sum != 0) cut_at(c / sum);
+  }
+  std::sort(cuts + 1, cuts + count);
+  cuts[count] = 1;
+  for (int i = 0; i < count; ++i) {
+    if (!(normal.cosine_at(0.5 * (cuts[i] + cuts[i + 1]), to_light) < limit)) continue;
+    if (!dark.empty() && dark.back().end == cuts[i])
+      dark.back().end = cuts[i + 1];
+    else
+      dark.push_back({cuts[i], cuts[i + 1]});
+  }
+}
 
 constexpr std::size_t triangles_per_part = 256, triangles_per_poll = 16;
 constexpr std::size_t most_pieces = std::size_t(1) << 26, pieces_per_tally = 1 << 16;
@@ -47,14 +271,6 @@ glm::dvec3 light_of(const ToneOptions& tone, const View& view) {
   return *tone.to_light / length;
 }
 
-View view_from_light(const Surfaces& surfaces, const glm::dvec3& to_light) {
-  FrameOptions options;
-  options.orthographic = true;
-  options.forward = -to_light;
-  options.objects = FramedObjects::all;
-  return frame(surfaces, 1024, 1024, options);
-}
-
 /// The seen triangles without twins. Coincident triangles hide no more than one of them and have the same lines, so
 /// only the first is kept.
 SeenMesh see_once(const WeldedMesh& mesh, const std::vector<std::uint32_t>& twins, const Sight& sight,
@@ -64,23 +280,15 @@ SeenMesh see_once(const WeldedMesh& mesh, const std::vector<std::uint32_t>& twin
   return seen;
 }
 
-std::vector<std::uint32_t> twins_of(const WeldedMesh& mesh, const View& view, const Surfaces& surfaces,
-                                    const Execution& execution) {
-  LineOptions none;
-  none.boundaries = none.silhouettes = none.borders = none.creases = false;
-  return find_features(see(mesh, Sight(view), execution), surfaces, none, execution).twins;
-}
-
+/// Features have only twins then.
+const LineOptions no_edges{.boundaries = false, .silhouettes = false, .borders = false, .creases = false};
 /// A piece of line `line` of a set, from `begin` to `end` in pixels along the line; a dot has no length.
 struct HatchPiece {
   std::uint32_t set;
   std::int32_t line;
   double begin, end;
   std::uint32_t instance;
-
-  friend bool operator<(const HatchPiece& a, const HatchPiece& b) {
-    return std::tie(a.set, a.line, a.begin, a.end, a.instance) < std::tie(b.set, b.line, b.begin, b.end, b.instance);
-  }
+  friend auto operator<=>(const HatchPiece&, const HatchPiece&) = default;
 };
 
 /// A view with its occluders.
@@ -92,7 +300,7 @@ struct Scenery {
         sight(view),
         seen(see_once(mesh, twins, sight, execution)),
         grid(seen, view, false, execution),
-        occlusion{mesh, sight, view, grid, shadow_kernels(execution.isa), false, false} {}
+        occlusion{sight, view, grid, shadow_kernels(execution.isa), false, false} {}
 
   Scenery(const Scenery&) = delete;  // members refer to each other
   Scenery& operator=(const Scenery&) = delete;
@@ -111,10 +319,12 @@ struct TonedScene {
       : surfaces(its_surfaces),
         to_light(light_of(tone, view)),
         mesh(weld(surfaces, execution)),
-        twins(twins_of(mesh, view, surfaces, execution)),
+        twins(find_features(see(mesh, Sight(view), execution), surfaces, no_edges, execution).twins),
         eye(mesh, twins, view, execution),
         normals(eye.seen, surfaces, tone.crease_angle, execution) {
-    if (tone.casts_shadows) light.emplace(mesh, twins, view_from_light(surfaces, to_light), execution);
+    if (!tone.casts_shadows) return;
+    const FrameOptions from_light{.orthographic = true, .forward = -to_light, .objects = FramedObjects::all};
+    light.emplace(mesh, twins, frame(surfaces, 1024, 1024, from_light), execution);
   }
 
   const Surfaces& surfaces;
@@ -168,9 +378,9 @@ class Hatcher {
         // One triangle may fill a very large picture, and so have very many lines.
         if (++lines_ % lines_per_poll == 0) tell();
         const std::optional<HatchSegment> segment = rows_[set].segment(triangle, line);
-        if (segment)
-          (this->*(task_.dots ? &Hatcher::add_dots : &Hatcher::add_pieces))(*segment, {set, line, 0, 0, instance},
-                                                                            pieces);
+        if (!segment) continue;
+        const HatchPiece piece{set, line, 0, 0, instance};
+        task_.dots ? add_dots(*segment, piece, pieces) : add_pieces(*segment, piece, pieces);
       }
     }
   }
@@ -193,8 +403,7 @@ class Hatcher {
   void add_pieces(const HatchSegment& segment, HatchPiece piece, std::vector<HatchPiece>& pieces) {
     find_normals(segment.edge.own[0]);
     const double below = task_.sets[piece.set].below;
-    find_dark({HatchSegment::at(segment.from, normals_), HatchSegment::at(segment.to, normals_)}, scene_.to_light,
-              below, dark_);
+    find_dark(segment.normal(normals_), scene_.to_light, below, dark_);
     const bool is_all_dark = dark_.size() == 1 && dark_[0].begin == 0 && dark_[0].end == 1;
     const bool may_be_in_shadow = is_towards_light_ && below > 0 && !is_all_dark;
     if (dark_.empty() && !may_be_in_shadow) return;
@@ -217,7 +426,7 @@ class Hatcher {
     find_dots(segment.edge, piece);
     if (dots_.empty()) return;
     find_normals(segment.edge.own[0]);
-    const NormalAlong normal{HatchSegment::at(segment.from, normals_), HatchSegment::at(segment.to, normals_)};
+    const NormalAlong normal = segment.normal(normals_);
     cut(segment.edge);
     dark_.clear();
     if (is_towards_light_ && !parts_.empty()) add_shadows(segment.edge);
@@ -276,12 +485,9 @@ class Hatcher {
   }
 
   [[nodiscard]] double along(const SightedEdge& edge, double t, const HatchPiece& piece) const {
-    // Interpolated from the nearer end, so that both ends are exact.
-    const glm::dvec3 place =
-        t <= 0.5 ? edge.from + (edge.to - edge.from) * t : edge.to + (edge.from - edge.to) * (1 - t);
     const Sight& sight = scene_.eye.sight;
     // The point is within the view; rounding may put it outside for triangles that are very much larger.
-    glm::dvec3 in_eye = sight.in_eye(place);
+    glm::dvec3 in_eye = sight.in_eye(place_between(edge.from, edge.to, t));
     in_eye.z = std::max(in_eye.z, sight.near());
     const HatchRows& row = rows_[piece.set];
     return row.within_picture(piece.line, row.along(glm::dvec2(sight.to_screen(in_eye))));
@@ -329,7 +535,6 @@ std::vector<HatchPiece> pieces_of(const TonedScene& scene, const HatchTask& task
   return joined(lists);
 }
 
-constexpr std::size_t most_sets = 16;
 constexpr double touching = 0.01;  // pixels: a smaller gap is no gap
 
 /// Sorts pieces, removes overlaps, and joins pieces that touch.
@@ -387,7 +592,7 @@ std::vector<std::uint32_t> sets_by_material(const std::vector<HatchSet>& sets, s
 
 void check(const HatchOptions& options) {
   const auto refuse = [](const char* what) { throw Error(ErrorCode::bad_argument, "hatch", what); };
-  if (options.sets.size() > most_sets) refuse("more than 16 sets");
+  if (options.sets.size() > 16) refuse("more than 16 sets");
   for (const HatchSet& set : options.sets) {
     if (!(std::abs(set.angle) <= 1e3)) refuse("the angle must be from -1000 to 1000 radians");
     if (!(set.spacing >= 0.5 && set.spacing <= 1e5)) refuse("the spacing must be from 0.5 to 100000 pixels");
@@ -396,8 +601,6 @@ void check(const HatchOptions& options) {
   }
   if (!(options.shortest >= 0 && options.shortest <= 1000)) refuse("the shortest line must be from 0 to 1000 pixels");
 }
-
-constexpr double most_dots = 2e7;
 
 }  // namespace
 
@@ -434,7 +637,7 @@ std::vector<Stipple> stipple(const Surfaces& surfaces, const View& view, const S
   validate(view);
   if (!(options.spacing >= 0.5 && options.spacing <= 1000))
     throw Error(ErrorCode::bad_argument, "stipple", "the spacing must be from 0.5 to 1000 pixels");
-  if (double(view.width) * view.height / (options.spacing * options.spacing) > most_dots)
+  if (double(view.width) * view.height / (options.spacing * options.spacing) > 2e7)
     throw Error(ErrorCode::limit_exceeded, "stipple", "more than 20000000 dots would fit; give a larger spacing");
   const IeeeScope ieee;
   report_progress(execution, "hatching", 0);
@@ -454,7 +657,6 @@ std::vector<Stipple> stipple(const Surfaces& surfaces, const View& view, const S
   for (const HatchPiece& piece : pieces) dots.push_back({rows[0].point(piece.line, piece.begin), piece.instance});
   if (options.nearest_first) {
     std::vector<HatchLine> lines;  // without length
-    lines.reserve(dots.size());
     for (const Stipple& dot : dots) lines.push_back({dot.at, dot.at, 0, dot.instance});
     lines = in_pen_order(std::move(lines), execution);
     for (std::size_t i = 0; i < dots.size(); ++i) dots[i] = {lines[i].from, lines[i].instance};

@@ -41,45 +41,35 @@ constexpr std::size_t kBytesPerTriangle = 400;
 constexpr double kCutFrom = 0.3;  // share of the progress at which cutting begins
 
 /// All edges that will be drawn, before they are cut.
-class Candidates {
- public:
-  Candidates(const WeldedMesh& mesh, std::vector<FeatureEdge> features, std::vector<Crossing> crossings)
-      : mesh_(mesh), features_(std::move(features)), crossings_(std::move(crossings)) {}
-
-  [[nodiscard]] std::size_t count() const { return features_.size() + crossings_.size(); }
+struct Candidates {
+  [[nodiscard]] std::size_t count() const { return features.size() + crossings.size(); }
 
   [[nodiscard]] DrawnEdge drawn(std::size_t i) const {
-    if (i < features_.size()) {
-      const FeatureEdge& f = features_[i];
-      return {mesh_.positions[f.from], mesh_.positions[f.to], f.kind, id_of(f.left), id_of(f.right)};
+    if (i < features.size()) {
+      const FeatureEdge& f = features[i];
+      return {mesh.positions[f.from], mesh.positions[f.to], f.kind, id_of(f.left), id_of(f.right)};
     }
-    const Crossing& c = crossings_[i - features_.size()];
+    const Crossing& c = crossings[i - features.size()];
     return {c.from.place, c.to.place, EdgeKind::intersection, id_of(c.left), id_of(c.right)};
   }
 
   [[nodiscard]] SightedEdge sighted(std::size_t i) const {
-    if (i < features_.size()) {
-      const FeatureEdge& f = features_[i];
-      return {mesh_.positions[f.from],
-              mesh_.positions[f.to],
-              {f.from, f.from},
-              {f.to, f.to},
-              {f.left, f.right},
-              0,
-              f.outer};
+    if (i < features.size()) {
+      const FeatureEdge& f = features[i];
+      const glm::dvec3 from = mesh.positions[f.from], to = mesh.positions[f.to];
+      return {from, to, {f.from, f.from}, {f.to, f.to}, {f.left, f.right}, 0, f.outer};
     }
-    const Crossing& c = crossings_[i - features_.size()];
+    const Crossing& c = crossings[i - features.size()];
     return {c.from.place, c.to.place, c.from.on, c.to.on, {c.left, c.right}, slack_of(c.from.place, c.to.place)};
   }
 
- private:
   [[nodiscard]] PrimitiveId id_of(std::uint32_t triangle) const {
-    return triangle == no_index ? no_primitive : mesh_.ids[triangle];
+    return triangle == no_index ? no_primitive : mesh.ids[triangle];
   }
 
-  const WeldedMesh& mesh_;
-  const std::vector<FeatureEdge> features_;
-  const std::vector<Crossing> crossings_;
+  const WeldedMesh& mesh;
+  const std::vector<FeatureEdge> features;
+  const std::vector<Crossing> crossings;
 };
 
 /// Fills the edges and parts of `drawing`.
@@ -166,11 +156,10 @@ Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions
     std::erase_if(crossings, [&](const Crossing& crossing) {
       return meet_at_gap(mesh, features.continued, crossing.left, crossing.right);
     });
-    const Candidates candidates(mesh, std::move(features.edges), std::move(crossings));
+    const Candidates candidates{mesh, std::move(features.edges), std::move(crossings)};
     report_progress(execution, "lines", kCutFrom);
     const ShadowKernels kernels = shadow_kernels(execution.isa);
-    cut_all(candidates, {mesh, sight, view, grid, kernels, options.counts_hidden, options.outlines}, execution,
-            drawing);
+    cut_all(candidates, {sight, view, grid, kernels, options.counts_hidden, options.outlines}, execution, drawing);
   } catch (const Error& error) {
     throw with_place(error, grid, mesh, surfaces);
   }

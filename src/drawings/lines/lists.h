@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joins and sorts lists that many threads make in parts. The lists are joined in the order of the parts, so results do
-// not depend on which thread made which part.
+// Lists that many threads make in parts, joined in the order of the parts and sorted.
 #pragma once
 
 #include <algorithm>

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A grid of square cells over a plane, for the indices of this room: triangles that may hide an edge, lines that may
-// lie on another line, and ends of short chains.
+// lie on another line, and ends of short chains. Callers keep the contents of cells in arrays, by cell number.
 //
-//   +-------+-------+-------+      A segment visits the cells that it passes, each with a box around the part of the
-//   |       |      .|--'    |      segment that may lie in the cell.
-//   |    .--+--' '  |       |
-//   |.--'   |       |       |      The grid itself only numbers its cells, row by row. Callers keep the contents of
-//   +-------+-------+-------+      cells in arrays, by cell number.
+//   +-------+-------+-------+
+//   |       |      .|--'    |      A segment visits the cells that it passes, each with a box around the part of the
+//   |    .--+--' '  |       |      segment that may lie in the cell.
+//   +-------+-------+-------+
 #pragma once
 
 #include <algorithm>
@@ -28,7 +27,7 @@ struct PassedCell {
   glm::dvec2 low, high;
 };
 
-/// Equal squares side by side, row by row.
+/// Squares are numbered row by row.
 struct SquareGrid {
   glm::dvec2 low{0};
   double size = 1;  ///< side length of a square
@@ -43,8 +42,7 @@ struct SquareGrid {
     return square(int(number % std::size_t(columns)), int(number / std::size_t(columns)));
   }
 
-  /// Calls visit(PassedCell) for each square within `pad` of the segment from `a` to `b`, row by row, until `visit`
-  /// returns false.
+  /// Calls visit(PassedCell) for the squares that a segment passes within `pad`, row by row, until it returns false.
   template <class Visitor>
   void visit_along(const glm::dvec2& a, const glm::dvec2& b, double pad, const Visitor& visit) const {
     const glm::dvec2& bottom = a.y < b.y ? a : b;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns dashes into paths of their own. A path is measured from corner to corner. Between two corners, the pattern is
-// stretched so that it begins and ends with a dash (ISO 128-2, 5.2). So two dashes meet at each corner.
+// Turns dashes into paths of their own. A path is measured from corner to corner. Between two corners the pattern is
+// stretched so that it begins and ends with a dash (ISO 128-2, 5.2), which then meets the next one around the corner.
 //
 //   corner                                     corner
 //     +-----  -----  -----  -----  -----  -------+        one span: a whole number of periods, and one more dash
 //                                                |
 //                                                |        around the corner the two dashes are one path
-//   a closed path without corners has no span: its pattern goes around a whole number of times
+//   around a closed path without corners, the pattern goes a whole number of times
 #include <algorithm>
 #include <cmath>
 
@@ -27,34 +27,36 @@ struct Span {
 };
 
 /// A path whose points are addressed by their distance along the path.
-class Ruler {
- public:
-  Ruler(const PageGroup& group, const PagePath& path) : is_closed_(path.is_closed) {
+struct Ruler {
+  struct Leg {
+    Join join;
+    std::optional<Arc> arc;
+    double begin, length;
+  };
+
+  Ruler(const PageGroup& group, const PagePath& path) : is_closed(path.is_closed) {
     for (std::uint32_t i = 0; i < detail::join_count(path); ++i) {
       const Join join = detail::join_of(group, path, i);
-      Leg leg{join, detail::arc_between(join.from, join.to, join.bulge), length_, 0};
+      Leg leg{join, detail::arc_between(join.from, join.to, join.bulge), length, 0};
       leg.length = leg.arc ? leg.arc->radius * std::abs(leg.arc->turn) : glm::distance(join.from, join.to);
-      length_ += leg.length;
-      if (leg.length > 0) legs_.push_back(leg);
+      length += leg.length;
+      if (leg.length > 0) legs.push_back(leg);
     }
   }
-
-  [[nodiscard]] double length() const { return length_; }
-  [[nodiscard]] bool is_empty() const { return legs_.empty(); }
 
   /// The spans from corner to corner. The first span of a closed path begins at its first corner; without corners, a
   /// closed path has no spans.
   [[nodiscard]] std::vector<Span> spans() const {
     std::vector<double> corners;
-    if (!is_closed_) corners.push_back(0);
-    for (std::size_t i = is_closed_ ? 0 : 1; i < legs_.size(); ++i) {
-      const Leg& before = legs_[i == 0 ? legs_.size() - 1 : i - 1];
-      if (glm::dot(direction(before, true), direction(legs_[i], false)) < sharp) corners.push_back(legs_[i].begin);
+    if (!is_closed) corners.push_back(0);
+    for (std::size_t i = is_closed ? 0 : 1; i < legs.size(); ++i) {
+      const Leg& before = legs[i == 0 ? legs.size() - 1 : i - 1];
+      if (glm::dot(direction(before, true), direction(legs[i], false)) < sharp) corners.push_back(legs[i].begin);
     }
-    if (!is_closed_)
-      corners.push_back(length_);
+    if (!is_closed)
+      corners.push_back(length);
     else if (!corners.empty())
-      corners.push_back(corners.front() + length_);
+      corners.push_back(corners.front() + length);
     std::vector<Span> spans;
     for (std::size_t i = 1; i < corners.size(); ++i) spans.push_back({corners[i - 1], corners[i]});
     return spans;
@@ -64,9 +66,9 @@ class Ruler {
   /// the path's end once.
   void cut(const Span& span, PageGroup& group) const {
     PagePath path{std::uint32_t(group.points.size()), 0, false};
-    for (int round = 0; round < (is_closed_ ? 2 : 1); ++round)
-      for (auto leg = first_leg(span.begin - round * length_); leg != legs_.end(); ++leg) {
-        const double start = leg->begin + round * length_;
+    for (int round = 0; round < (is_closed ? 2 : 1); ++round)
+      for (auto leg = first_leg(span.begin - round * length); leg != legs.end(); ++leg) {
+        const double start = leg->begin + round * length;
         if (start >= span.end) break;
         const double begin = std::max(span.begin - start, 0.0), end = std::min(span.end - start, leg->length);
         if (!(begin < end)) continue;
@@ -79,18 +81,11 @@ class Ruler {
     if (path.count > 0) group.paths.push_back(path);
   }
 
- private:
-  struct Leg {
-    Join join;
-    std::optional<Arc> arc;
-    double begin, length;
-  };
-
   /// The last leg that begins at `along` or before; the first leg if there is none.
   [[nodiscard]] std::vector<Leg>::const_iterator first_leg(double along) const {
-    const auto after = std::upper_bound(legs_.begin(), legs_.end(), along,
+    const auto after = std::upper_bound(legs.begin(), legs.end(), along,
                                         [](double place, const Leg& leg) { return place < leg.begin; });
-    return after == legs_.begin() ? after : after - 1;
+    return after == legs.begin() ? after : after - 1;
   }
 
   static void add(PageGroup& group, const glm::dvec2& point) {
@@ -113,9 +108,9 @@ class Ruler {
     return std::copysign(1.0, leg.arc->turn) * glm::dvec2(-std::sin(angle), std::cos(angle));
   }
 
-  const bool is_closed_;
-  std::vector<Leg> legs_;
-  double length_ = 0;
+  const bool is_closed;
+  std::vector<Leg> legs;
+  double length = 0;
 };
 
 /// The dash pattern of a pen: a dash, a gap, a dash and so on.
@@ -170,14 +165,14 @@ class Pattern {
 };
 
 /// The spans of a path that are drawn as dashes.
-std::vector<Span> drawn_of(const Ruler& ruler, const Pattern& pattern, bool is_closed) {
+std::vector<Span> drawn_of(const Ruler& ruler, const Pattern& pattern) {
   const std::vector<Span> spans = ruler.spans();
   std::vector<Span> drawn;
   for (const Span& span : spans) pattern.fill(span, drawn);
-  if (spans.empty()) pattern.fill_around(ruler.length(), drawn);
+  if (spans.empty()) pattern.fill_around(ruler.length, drawn);
   // The last dash of a closed path continues in the first.
-  if (is_closed && drawn.size() > 1 && drawn.back().end == drawn.front().begin + ruler.length()) {
-    drawn.back().end = drawn.front().end + ruler.length();
+  if (ruler.is_closed && drawn.size() > 1 && drawn.back().end == drawn.front().begin + ruler.length) {
+    drawn.back().end = drawn.front().end + ruler.length;
     drawn.erase(drawn.begin());
   }
   return drawn;
@@ -195,15 +190,15 @@ PageGroup with_cut_dashes(const PageGroup& group, std::size_t most, const Execut
   for (const PagePath& path : group.paths) {
     poll();
     const Ruler ruler(group, path);
-    if (ruler.is_empty()) {  // a dot
+    if (ruler.legs.empty()) {  // a dot
       cut.paths.push_back({std::uint32_t(cut.points.size()), 1, false});
       cut.points.push_back(group.points[path.first]);
       cut.bulges.push_back(0);
       continue;
     }
-    if (double(cut.paths.size()) + pattern.count_on(ruler.length()) > double(most))
+    if (double(cut.paths.size()) + pattern.count_on(ruler.length) > double(most))
       throw Error(ErrorCode::limit_exceeded, "dashes", "more than 20000000 of them");
-    for (const Span& span : drawn_of(ruler, pattern, path.is_closed)) {
+    for (const Span& span : drawn_of(ruler, pattern)) {
       poll();
       ruler.cut(span, cut);
     }

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes DXF of AutoCAD release 12 (AC1009), which all programs read. A file consists of pairs of lines: a group code
-// and its value.
+// DXF of AutoCAD release 12 (AC1009), which all programs read: pairs of lines, a group code and its value.
 //
 //   0           a group code: the value is the kind of an entity
 //   LINE
 //   8           the entity's layer
 //   2_VISIBLE
 //
-// Release 12 has neither groups nor line widths, so layers represent both: each group is a layer, which gives its line
-// type and colour. The name of a DXF layer begins with the page's layer, so that programs can select all of that layer.
-// The y axis of a page points down and that of DXF up, so places are flipped and arcs change their direction.
+// Release 12 has neither groups nor line widths: each group is a layer, which gives its line type and colour. The y
+// axis of a page points down and that of DXF up, so places are flipped and arcs change their direction.
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -26,32 +24,12 @@ namespace {
 std::string table_text(const std::string& name) {
   std::string clean;
   for (const char c : name) {
-    const bool is_lower = c >= 'a' && c <= 'z';
-    const bool is_fine = (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
-    if (is_lower || is_fine)
-      clean += is_lower ? char(c - 'a' + 'A') : c;
-    else if (clean.empty() || clean.back() != '_')
-      clean += '_';
+    const char capital = c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c;
+    const bool is_fine = (capital >= 'A' && capital <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+    if (is_fine || clean.empty() || clean.back() != '_') clean += is_fine ? capital : '_';
   }
   return clean;
 }
-
-/// Distinct names of at most 31 characters.
-class TableNames {
- public:
-  std::string add(const std::string& name) {
-    constexpr std::size_t longest = 26;  // leaves room for _ and a number below `most_layers`
-    const std::string clean = name.empty() ? "LAYER" : name.substr(0, longest);
-    std::string unique = clean;
-    for (int& number = next_.try_emplace(clean, 2).first->second; !taken_.insert(unique).second; ++number)
-      unique = clean + "_" + std::to_string(number);
-    return unique;
-  }
-
- private:
-  std::set<std::string> taken_ = {"0"};  // every drawing has this layer
-  std::map<std::string, int> next_;
-};
 
 /// With more layers, each layer of the page is only one DXF layer, because a longer list helps nobody.
 constexpr std::size_t most_layers = 1000;
@@ -62,75 +40,56 @@ struct Layer {
   int color = 7;
 };
 
-/// The number of the standard colour nearest to `color`.
-int color_number(const PageColor& color) {
-  struct Numbered {
-    int number, red, green, blue;
-  };
-  // Colour 7 is black on white paper and white on a black screen.
-  constexpr Numbered all[] = {{7, 0, 0, 0},   {1, 255, 0, 0},   {2, 255, 255, 0},   {3, 0, 255, 0},    {4, 0, 255, 255},
-                              {5, 0, 0, 255}, {6, 255, 0, 255}, {8, 128, 128, 128}, {9, 192, 192, 192}};
-  const auto distance = [&](const Numbered& n) {
-    const int r = n.red - color.red, g = n.green - color.green, b = n.blue - color.blue;
-    return r * r + g * g + b * b;
-  };
-  return std::min_element(std::begin(all), std::end(all),
-                          [&](const Numbered& a, const Numbered& b) { return distance(a) < distance(b); })
-      ->number;
-}
-
-/// The colour of a layer's lines. Black lines get a colour by their class, the digit with which the name of their page
-/// layer begins. So programs and lasers can distinguish classes, for which release 12 has no line widths.
-int layer_color(const std::string& page_layer, const Pen& pen) {
-  const int color = color_number(pen.color);
-  // For 0, and for hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame and sections: colours
-  // that are visible on black and on white.
+/// The colour of a layer's lines: the nearest of those with a standard number. Black lines get a colour by the digit at
+/// which the page layer's name begins, so that programs and lasers can distinguish classes.
+int layer_color(const std::string& page_layer, const PageColor& color) {
+  // Number, red, green, blue. Colour 7 is black on white paper and white on a black screen.
+  constexpr int all[][4] = {{7, 0, 0, 0},   {1, 255, 0, 0},   {2, 255, 255, 0},   {3, 0, 255, 0},    {4, 0, 255, 255},
+                            {5, 0, 0, 255}, {6, 255, 0, 255}, {8, 128, 128, 128}, {9, 192, 192, 192}};
+  int nearest = 7, least = std::numeric_limits<int>::max();
+  for (const auto& [number, red, green, blue] : all) {
+    const int r = red - color.red, g = green - color.green, b = blue - color.blue;
+    if (const int distance = r * r + g * g + b * b; distance < least) nearest = number, least = distance;
+  }
+  // From 1: hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame, sections.
   constexpr int of_classes[] = {7, 6, 7, 5, 8, 9, 1, 3, 4, 3};
   const bool is_numbered = !page_layer.empty() && page_layer[0] >= '0' && page_layer[0] <= '9';
-  return color == 7 && is_numbered ? of_classes[page_layer[0] - '0'] : color;
+  return nearest == 7 && is_numbered ? of_classes[page_layer[0] - '0'] : nearest;
 }
-
-/// The DXF layers of a page, and the layer of each group.
-struct Layers {
-  explicit Layers(const Page& page) {
-    std::size_t groups = 0;
-    for (const PageLayer& layer : page.layers) groups += layer.groups.size() + 1;
-    TableNames names;
-    for (const PageLayer& layer : page.layers) {
-      const std::string of_class = table_text(layer.name);
-      of_groups.emplace_back();
-      std::optional<std::size_t> common;
-      if (layer.groups.empty()) list.push_back({names.add(of_class), {}, layer_color(layer.name, {})});
-      for (const PageGroup& group : layer.groups) {
-        if (groups <= most_layers && !group.name.empty()) {
-          of_groups.back().push_back(list.size());
-          // On sheets, every class with named groups fits into 11 characters, so that programs can select all of a
-          // class.
-          list.push_back({names.add(of_class.substr(0, 11) + "-" + table_text(group.name)), group.pen,
-                          layer_color(layer.name, group.pen)});
-          continue;
-        }
-        if (!common) {
-          common = list.size();
-          list.push_back({names.add(of_class), group.pen, layer_color(layer.name, group.pen)});
-        }
-        of_groups.back().push_back(*common);
-      }
-    }
-  }
-
-  std::vector<Layer> list;
-  std::vector<std::vector<std::size_t>> of_groups;  ///< by layer of the page: for each group, its index in `list`
-};
 
 constexpr int by_layer = 256;
 
 class DxfWriter {
  public:
   DxfWriter(const Page& page, OutputFile& file, const Execution& execution)
-      : page_(page), layers_(page), out_(file), progress_(std::span(&page, 1), execution) {
-    for (const PageLayer& layer : page.layers)
-      for (const PageGroup& group : layer.groups) types_.try_emplace(type_name(group.pen), group.pen.dashes);
+      : page_(page), out_(file), progress_(std::span(&page, 1), execution) {
+    std::size_t groups = 0;
+    for (const PageLayer& layer : page.layers) groups += layer.groups.size() + 1;
+    std::set<std::string> names = {"0"};  // every drawing has this layer
+    std::map<std::string, int> next;
+    for (const PageLayer& layer : page.layers) {
+      const std::string of_class = table_text(layer.name);
+      layers_of_groups_.emplace_back();
+      std::optional<std::size_t> common;
+      const auto add = [&](const std::string& name, const Pen& pen) {
+        // Distinct names of at most 31 characters: there is room for _ and a number below `most_layers`.
+        const std::string clean = name.empty() ? "LAYER" : name.substr(0, 26);
+        std::string unique = clean;
+        for (int& number = next.try_emplace(clean, 2).first->second; !names.insert(unique).second; ++number)
+          unique = clean + "_" + std::to_string(number);
+        layers_.push_back({unique, pen, layer_color(layer.name, pen.color)});
+        return layers_.size() - 1;
+      };
+      if (layer.groups.empty()) add(of_class, {});
+      for (const PageGroup& group : layer.groups) {
+        types_.try_emplace(type_name(group.pen), group.pen.dashes);
+        const bool is_own = groups <= most_layers && !group.name.empty();
+        if (!is_own && !common) common = add(of_class, group.pen);
+        // On sheets, every class with named groups fits into 11 characters, so that programs can select all of a class.
+        layers_of_groups_.back().push_back(
+            is_own ? add(of_class.substr(0, 11) + "-" + table_text(group.name), group.pen) : *common);
+      }
+    }
   }
 
   void write() {
@@ -142,7 +101,7 @@ class DxfWriter {
     section("ENTITIES");
     for (std::size_t i = 0; i < page_.layers.size(); ++i)
       for (std::size_t k = 0; k < page_.layers[i].groups.size(); ++k)
-        write_group(page_.layers[i], page_.layers[i].groups[k], layers_.list[layers_.of_groups[i][k]]);
+        write_group(page_.layers[i], page_.layers[i].groups[k], layers_[layers_of_groups_[i][k]]);
     end_section();
     text(0, "EOF");
     out_.flush();
@@ -150,13 +109,10 @@ class DxfWriter {
 
  private:
   // A group code is one short line, its value another.
-  void text(int code, std::string_view value) { out_.integer(code) << '\n' << value << '\n'; }
-  void integer(int code, int value) {
-    out_.integer(code) << '\n';
-    out_.integer(value) << '\n';
-  }
+  void text(int code, std::string_view value) { out_ << code << '\n' << value << '\n'; }
+  void integer(int code, int value) { out_ << code << '\n' << value << '\n'; }
   void number(int code, double value, int digits = 3) {
-    out_.integer(code) << '\n';
+    out_ << code << '\n';
     out_.decimal(value, digits) << '\n';
   }
   void section(std::string_view name) {
@@ -193,9 +149,8 @@ class DxfWriter {
     end_section();
   }
 
-  /// The name of a pen's line type. Some readers know only standard names, and draw all other types solid. The name
-  /// tells how many dashes a period has. The suffix "2" or "X2" means that the period is about half or twice as long as
-  /// the period of the first pen with the same name.
+  /// The line type of a pen, by the number of dashes in a period. Some readers draw all but standard names solid. The
+  /// suffix "2" or "X2" means a period about half or twice as long as that of the first such pen.
   [[nodiscard]] std::string type_name(const Pen& pen) const {
     constexpr const char* names[] = {"CONTINUOUS", "HIDDEN", "CENTER", "PHANTOM"};
     const std::string name = names[std::min(pen.dashes.size() / 2, std::size(names) - 1)];
@@ -208,17 +163,6 @@ class DxfWriter {
     return std::accumulate(dashes.begin(), dashes.end(), 0.0);
   }
 
-  void line_type(const std::string& name, const std::vector<double>& dashes) {
-    text(0, "LTYPE");
-    text(2, name);
-    integer(70, 0);
-    text(3, dashes.empty() ? "Solid line" : "Dashed, in millimetres");
-    integer(72, 'A');
-    integer(73, int(dashes.size()));
-    number(40, period_of(dashes));
-    for (std::size_t i = 0; i < dashes.size(); ++i) number(49, i % 2 == 0 ? dashes[i] : -dashes[i]);
-  }
-
   void table(std::string_view name, std::size_t entries) {
     text(0, "TABLE");
     text(2, name);
@@ -228,10 +172,19 @@ class DxfWriter {
   void write_tables() {
     section("TABLES");
     table("LTYPE", types_.size());
-    for (const auto& [name, dashes] : types_) line_type(name, dashes);
+    for (const auto& [name, dashes] : types_) {
+      text(0, "LTYPE");
+      text(2, name);
+      integer(70, 0);
+      text(3, dashes.empty() ? "Solid line" : "Dashed, in millimetres");
+      integer(72, 'A');
+      integer(73, int(dashes.size()));
+      number(40, period_of(dashes));
+      for (std::size_t i = 0; i < dashes.size(); ++i) number(49, i % 2 == 0 ? dashes[i] : -dashes[i]);
+    }
     text(0, "ENDTAB");
-    table("LAYER", layers_.list.size());
-    for (const Layer& layer : layers_.list) {
+    table("LAYER", layers_.size());
+    for (const Layer& layer : layers_) {
       text(0, "LAYER");
       text(2, layer.name);
       integer(70, 0);
@@ -246,7 +199,7 @@ class DxfWriter {
     if (group.pen.width == 0 || group.pen.color.opacity == 0) return;
     own_type_ = type_name(group.pen);
     if (own_type_ == type_name(layer.pen)) own_type_.clear();
-    own_color_ = layer_color(of_page.name, group.pen);
+    own_color_ = layer_color(of_page.name, group.pen.color);
     if (own_color_ == layer.color) own_color_ = by_layer;
     for (const PagePath& path : group.paths) {
       progress_.step();
@@ -312,7 +265,8 @@ class DxfWriter {
   }
 
   const Page& page_;
-  const Layers layers_;
+  std::vector<Layer> layers_;
+  std::vector<std::vector<std::size_t>> layers_of_groups_;  ///< by layer and group of the page: indices of layers_
   PageText out_;
   WritingProgress progress_;
   std::map<std::string, std::vector<double>> types_{{"CONTINUOUS", {}}};  ///< line types: the dashes of each name

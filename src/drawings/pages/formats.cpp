@@ -1,32 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A drawing has millions of numbers of a few digits. They are integers here (thousandths of a millimetre), so writing
-// them needs no library that rounds, and gives the same bytes everywhere. Angles and radii are compared in millimetres
-// of paper, with a tolerance for rounding to thousandths.
+// them needs no library that rounds, and gives the same bytes everywhere.
 #include "pages/formats.h"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 
 #include "frontmost/base.h"
 
 namespace frontmost::detail {
 namespace {
-
-constexpr char32_t replacement = 0xFFFD;
-
-/// The number of bytes after the first byte of a UTF-8 character, the data bits of the first byte, and the least code.
-struct Lead {
-  int following;
-  char32_t bits, least;
-};
-std::optional<Lead> lead_of(unsigned char byte) {
-  if (byte < 0x80) return Lead{0, byte, 0};
-  if (byte >= 0xC2 && byte < 0xE0) return Lead{1, byte & 0x1Fu, 0x80};
-  if (byte >= 0xE0 && byte < 0xF0) return Lead{2, byte & 0x0Fu, 0x800};
-  if (byte >= 0xF0 && byte < 0xF5) return Lead{3, byte & 0x07u, 0x10000};
-  return std::nullopt;
-}
 
 constexpr char hex[] = "0123456789ABCDEF";
 
@@ -73,17 +55,19 @@ std::optional<Arc> whole_arc(const PageGroup& group, const PagePath& path) {
 }
 
 char32_t take_character(std::string_view& text) {
-  const std::optional<Lead> lead = lead_of((unsigned char)text[0]);
-  std::size_t length = 1;
-  char32_t code = lead ? lead->bits : replacement;
-  for (; lead && int(length) <= lead->following; ++length) {
-    if (length == text.size() || ((unsigned char)text[length] & 0xC0) != 0x80) break;
-    code = code << 6 | ((unsigned char)text[length] & 0x3Fu);
+  constexpr char32_t least[] = {0, 0, 0x80, 0x800, 0x10000};  // by length, the least code that needs so many bytes
+  const auto byte = [&](std::size_t i) { return char32_t(static_cast<unsigned char>(text[i])); };
+  const char32_t lead = byte(0);
+  const std::size_t length = lead < 0x80 ? 1 : lead < 0xC2 || lead > 0xF4 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
+  bool is_whole = length > 0 && length <= text.size();
+  char32_t code = length == 1 ? lead : lead & 0x7Fu >> length;
+  for (std::size_t i = 1; is_whole && i < length; ++i) {
+    is_whole = (byte(i) & 0xC0u) == 0x80u;
+    code = code << 6 | (byte(i) & 0x3Fu);
   }
-  const bool whole = lead && int(length) == lead->following + 1 && code >= lead->least && code < 0x110000 &&
-                     !(code >= 0xD800 && code < 0xE000);
-  text.remove_prefix(whole ? length : 1);
-  return whole ? code : replacement;
+  is_whole = is_whole && code >= least[length] && code < 0x110000 && !(code >= 0xD800 && code < 0xE000);
+  text.remove_prefix(is_whole ? length : 1);
+  return is_whole ? code : U'\uFFFD';
 }
 
 PageText& PageText::operator<<(std::string_view text) {
@@ -95,16 +79,6 @@ PageText& PageText::operator<<(std::string_view text) {
     text.remove_prefix(count);
   }
   return *this;
-}
-
-PageText& PageText::integer(std::int64_t value) {
-  char digits[20];
-  char* first = std::end(digits);
-  std::uint64_t rest = value < 0 ? 0 - std::uint64_t(value) : std::uint64_t(value);
-  do *--first = char('0' + rest % 10);
-  while (rest /= 10);
-  if (value < 0) *this << '-';
-  return *this << std::string_view(first, std::size_t(std::end(digits) - first));
 }
 
 PageText& PageText::fixed(std::int64_t value, int digits) {
@@ -173,12 +147,9 @@ std::string pdf_text(std::string_view name) {
   std::string text = "<FEFF";
   for (std::string_view rest = shown; !rest.empty();) {
     const char32_t code = take_character(rest);
-    if (code >= 0x10000) {
-      append_hex(0xD800 + unsigned((code - 0x10000) >> 10), text);
-      append_hex(0xDC00 + unsigned((code - 0x10000) & 0x3FF), text);
-    } else {
-      append_hex(unsigned(code), text);
-    }
+    const bool is_pair = code >= 0x10000;  // of surrogates
+    if (is_pair) append_hex(0xD800 + unsigned((code - 0x10000) >> 10), text);
+    append_hex(is_pair ? 0xDC00 + unsigned((code - 0x10000) & 0x3FF) : unsigned(code), text);
   }
   return text + '>';
 }

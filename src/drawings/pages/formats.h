@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The formats behind save(page), and their common parts: text, arcs and the appearance of paths.
 //
-// Page --validate()--> layers --> groups --> paths --paint_of()--> fill and line colours
-//
-//              . - .          A writer is a class that reads one page and appends text to a PageText. No writer
-//          .-'   |   '-.      converts the page first. The bulge of a join is the height of its arc divided by half of
-//        from ---+--- to      the chord, which is the tangent of a quarter of the arc's angle. Formats need a radius
-//                             and flags, a centre and angles, or approximating curves instead.
+//              . - .          A writer is a class over one page that appends text to a PageText.
+//          .-'   |   '-.      The bulge of a join is the height of its arc by half of the chord:
+//        from ---+--- to      the tangent of a quarter of its angle.
 #pragma once
 
 #include <cmath>
@@ -16,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 #include "base/output_file.h"
 #include "base/parallel.h"
@@ -29,8 +27,7 @@ struct Arc {
   double radius = 0, begin = 0, turn = 0;
 };
 
-/// The arc from `from` to `to`. None for a straight join: without bulge, without length, or within a ten-thousandth of
-/// a millimetre of its chord.
+/// The arc from `from` to `to`. None within a ten-thousandth of a millimetre of its chord.
 [[nodiscard]] std::optional<Arc> arc_between(const glm::dvec2& from, const glm::dvec2& to, double bulge);
 
 /// The join that begins at point `i` of a path: its ends, and its bulge.
@@ -53,8 +50,7 @@ struct Join {
 [[nodiscard]] inline std::int64_t thousandths(double value) { return std::llround(value * 1000); }
 [[nodiscard]] inline glm::i64vec2 thousandths(const glm::dvec2& p) { return {thousandths(p.x), thousandths(p.y)}; }
 
-/// A buffer in front of a file, or of another sink of bytes. Its own number formatting takes nine nanoseconds per
-/// number; to_chars takes eighty.
+/// A buffer in front of a file, or of another sink of bytes. A number takes nine nanoseconds, by to_chars eighty.
 class PageText {
  public:
   using Sink = std::function<void(std::string_view)>;
@@ -69,12 +65,13 @@ class PageText {
     buffer_[used_++] = character;
     return *this;
   }
-  /// Writes a decimal number without a fraction.
-  PageText& integer(std::int64_t value);
-  /// Writes value / 10^digits without trailing zeros. `digits` is 1 to 9.
+  template <class Integer, class = std::enable_if_t<std::is_integral_v<Integer>>>
+  PageText& operator<<(Integer value) {
+    return fixed(std::int64_t(value), 0);
+  }
+  /// Writes value / 10^digits without trailing zeros. `digits` is 0 to 9.
   PageText& fixed(std::int64_t value, int digits = 3);
-  /// Writes a number rounded to `digits` decimals, with a zero before the point, which JSON and DXF need and other
-  /// formats do not.
+  /// Writes a number rounded to `digits`, with the zero before the point, which only JSON and DXF need.
   PageText& decimal(double value, int digits = 3);
   /// Number of bytes written so far.
   [[nodiscard]] std::uint64_t size() const { return passed_on_ + used_; }
@@ -91,8 +88,7 @@ class PageText {
   std::uint64_t passed_on_ = 0;
 };
 
-/// Removes and returns the first character of UTF-8 text that is not empty. An invalid byte is removed alone, as
-/// U+FFFD.
+/// Removes and returns the first character of UTF-8 text that is not empty; an invalid byte alone, as U+FFFD.
 [[nodiscard]] char32_t take_character(std::string_view& text);
 
 /// A name for element content and attributes of XML 1.0; printable_text() replaces characters that XML forbids.
@@ -134,7 +130,6 @@ class WritingProgress {
 /// The appearance of a path with its group's pen: the colours of its fill and its line.
 struct PathPaint {
   std::optional<PageColor> fill, line;
-  friend bool operator==(const PathPaint&, const PathPaint&) = default;
   [[nodiscard]] bool is_seen() const { return fill || line; }
 };
 [[nodiscard]] PathPaint paint_of(const PageGroup& group, std::size_t path);

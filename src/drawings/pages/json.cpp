@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A page as JSON, for further processing by programs.
+// A page as JSON: all of its data under the names of the library's types, with as many digits as other formats.
 //
 //   {"width": ..., "layers": [{"name": ..., "groups": [{"pen": {...}, "paths": [{"points": [[x, y], ...]}, ...]}]}]}
-//
-// The file contains all data of a page under the names of the library's types, with as many digits as other formats.
 #include "pages/formats.h"
 
 namespace frontmost::detail {
@@ -11,8 +9,8 @@ namespace {
 
 void write_color(PageText& out, const PageColor& color) {
   out << "[";
-  for (const std::uint8_t part : {color.red, color.green, color.blue}) out.integer(part) << ", ";
-  out.integer(color.opacity) << "]";
+  for (const std::uint8_t part : {color.red, color.green, color.blue}) out << part << ", ";
+  out << color.opacity << "]";
 }
 
 void write_pen(PageText& out, const Pen& pen) {
@@ -68,10 +66,7 @@ void save_json(const Page& page, OutputFile& file, const Execution& execution) {
     for (const PageGroup& group : layer.groups) {
       out << (&group == layer.groups.data() ? "\n" : ",\n") << "{\"name\": " << json_text(group.name) << ", \"pen\": ";
       write_pen(out, group.pen);
-      if (group.opacity < 255) {
-        out << ", \"opacity\": ";
-        out.integer(group.opacity);
-      }
+      if (group.opacity < 255) out << ", \"opacity\": " << group.opacity;
       out << ", \"paths\": [";
       for (std::size_t i = 0; i < group.paths.size(); ++i) {
         progress.step();

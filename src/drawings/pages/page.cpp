@@ -1,9 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0
-// Pages are validated here, so that their writers have no error paths. A page is refused if a format could not write
-// it: for numbers that are not finite or have too many digits, for lists of different lengths, and for paths with
-// missing points.
-//
-// The shapes of a figure become filled paths of a page, and each of its blend groups becomes a group with an opacity.
+// SPDX-License-Identifier: Apache-2.0 Pages are validated here, so that their writers have no error paths. A page is
+// refused if a format could not write it: for numbers that are not finite or have too many digits, for lists of
+// different lengths, and for paths with missing points. The shapes of a figure become filled paths of a page, and each
+// of its blend groups becomes a group with an opacity.
 #include <cmath>
 #include <filesystem>
 #include <span>
@@ -21,16 +19,13 @@ constexpr double least_side = 0.01, most_side = 1e5, farthest = 1e6, most_width 
   throw Error(ErrorCode::bad_argument, where, reason);
 }
 
-void check_pen(const Pen& pen, const std::string& where) {
+void check_group(const PageGroup& group, const std::string& where) {
+  const Pen& pen = group.pen;
   // The condition is written so that NaN fails, here and below.
   if (!(pen.width >= 0 && pen.width <= most_width)) refuse(where, "the pen's width must be from 0 to 1000 mm");
   if (pen.dashes.size() % 2 != 0) refuse(where, "dashes and gaps must come in pairs");
   for (const double dash : pen.dashes)
     if (!(dash >= 0.001 && dash <= most_side)) refuse(where, "dashes and gaps must be from 0.001 to 100000 mm");
-}
-
-void check_group(const PageGroup& group, const std::string& where) {
-  check_pen(group.pen, where);
   if (group.points.size() > 0xFFFFFFFFu) throw Error(ErrorCode::limit_exceeded, where, "over 2^32 points");
   for (const glm::dvec2& p : group.points)
     if (!(std::abs(p.x) <= farthest && std::abs(p.y) <= farthest))
@@ -50,8 +45,6 @@ void check_group(const PageGroup& group, const std::string& where) {
 
 /// Millimetres per pixel, as in style sheets, so that a figure is as large on a page as the picture in a browser.
 constexpr double kMillimetres = 25.4 / 96;
-
-PageColor page_color(const glm::u8vec4& color) { return {color.r, color.g, color.b, color.a}; }
 
 PageGroup backdrop(const glm::vec3& color, const Page& page) {
   PageGroup group{"background", Pen{}};
@@ -97,8 +90,8 @@ PageGroup group_of(const Figure& figure, std::span<const FigureShape> shapes) {
       for (std::size_t k = 0; k < ring.corner_count; ++k)
         outline.push_back(figure.corners[ring.first_corner + k] * kMillimetres);
       group.add(outline, true, i > 0);
-      group.fills.push_back(page_color(shape.color));
-      if (is_blended) group.fills.back().opacity = 255;
+      const glm::u8vec4& color = shape.color;
+      group.fills.push_back({color.r, color.g, color.b, is_blended ? std::uint8_t(255) : color.a});
     }
   return group;
 }

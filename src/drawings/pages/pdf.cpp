@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes PDF 1.5, or 1.6 if a page needs a unit of its own. Each page is one compressed stream of drawing operators.
-// Layers are optional content. Groups with an opacity are forms that are transparency groups.
+// PDF 1.5, or 1.6 if a page needs its own unit. Each page is one compressed stream of drawing operators, with layers as
+// optional content, and groups with an opacity as forms that are transparency groups.
 //
 //   content of a page      /OC /L0 BDC                layer 0 begins
 //                            0.5 w [] 0 d             a group: its pen
 //                            10 20 m 30 40 l S        a path: move, line, stroke
 //                            q /F128 gs /G0 Do Q      a group with an opacity: form 0, composited as a whole
 //
-// Objects are written immediately, and their offsets are recorded for the table at the end. There is no date and no
-// file identifier, so a page always gives the same bytes.
+// There is no date and no file identifier, so a page always gives the same bytes.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -77,28 +76,28 @@ class PdfContent {
   PdfContent(const Page& page, PageText& out, double scale, WritingProgress& progress)
       : page_(page), out_(out), scale_(scale), progress_(progress) {}
 
-  void write() {
+  void write_page() {
     std::size_t form = 0;
     // Sets millimetres with y down, as on the page, and round ends and joins.
     out_.fixed(std::llround(scale_ * 1e9), 9) << " 0 0 ";
     out_.fixed(-std::llround(scale_ * 1e9), 9) << " 0 ";
     out_.fixed(std::llround(page_.height * scale_ * 1e6), 6) << " cm 1 J 1 j\n";
     for (std::size_t i = 0; i < page_.layers.size(); ++i) {
-      out_ << "/OC /L";
-      out_.integer(std::int64_t(i)) << " BDC\n";
+      out_ << "/OC /L" << i << " BDC\n";
       for (const PageGroup& group : page_.layers[i].groups) {
         if (group.opacity == 255) {
           write_group(group);
-        } else {
-          write_form(group, form++);
+          continue;
         }
+        states_.fills[group.opacity] = true;
+        out_ << "q /F" << group.opacity << " gs /G" << form++ << " Do Q\n";
       }
       out_ << "EMC\n";
     }
   }
 
   /// Writes the operators of a form, which begins with the page's default colours.
-  void write_alone(const PageGroup& group) {
+  void write_form(const PageGroup& group) {
     out_ << "0 0 0 rg 0 0 0 RG\n";
     write_group(group);
   }
@@ -111,13 +110,6 @@ class PdfContent {
   [[nodiscard]] const States& states() const { return states_; }
 
  private:
-  void write_form(const PageGroup& group, std::size_t number) {
-    states_.fills[group.opacity] = true;
-    out_ << "q /F";
-    out_.integer(group.opacity) << " gs /G";
-    out_.integer(std::int64_t(number)) << " Do Q\n";
-  }
-
   void write_group(const PageGroup& group) {
     if (group.pen.width > 0) {
       out_.fixed(thousandths(group.pen.width)) << " w [";
@@ -160,8 +152,7 @@ class PdfContent {
     }
     if (color.opacity != now.opacity) {
       used[color.opacity] = true;
-      out_ << state;
-      out_.integer(color.opacity) << " gs\n";
+      out_ << state << color.opacity << " gs\n";
     }
     now = color;
   }
@@ -231,7 +222,7 @@ struct PdfPage {
   double scale;  ///< units per millimetre
 };
 
-/// Writes the objects of a file, and records their offsets.
+/// Writes the objects of a file at once, and records their offsets for the table at its end.
 class PdfWriter {
  public:
   PdfWriter(std::span<const Page> pages, OutputFile& file, const Execution& execution)
@@ -245,7 +236,7 @@ class PdfWriter {
     out_ << (has_unit ? "%PDF-1.6" : "%PDF-1.5") << "\n%\xE2\xE3\xCF\xD3\n";
     for (const PdfPage& page : pages_) {
       begin(page.contents) << "<< ";
-      write_page(page, write_stream(page, page.length, [](PdfContent& content) { content.write(); }));
+      write_page(page, write_stream(page, nullptr, page.length));
       for (const PdfPage::Form& form : page.forms) write_form(page, form);
     }
     for (const Layer& layer : layers_)
@@ -290,26 +281,23 @@ class PdfWriter {
 
   PageText& begin(std::size_t object) {
     places_[object] = out_.size();
-    return out_.integer(std::int64_t(object)) << " 0 obj\n";
+    return out_ << object << " 0 obj\n";
   }
-  PageText& reference(std::size_t object) { return out_.integer(std::int64_t(object)) << " 0 R "; }
+  PageText& reference(std::size_t object) { return out_ << object << " 0 R "; }
 
-  /// Writes the end of a stream's dictionary, the stream, and its length as a separate object.
-  template <class Write>
-  States write_stream(const PdfPage& page, std::size_t length_object, const Write& write) {
-    out_ << "/Length ";
-    out_.integer(std::int64_t(length_object)) << " 0 R " << stream_filter << ">>\nstream\n";
+  /// Writes the end of a stream's dictionary, the stream of a form or else of the page, and its length as an object.
+  States write_stream(const PdfPage& page, const PageGroup* form, std::size_t length_object) {
+    out_ << "/Length " << length_object << " 0 R " << stream_filter << ">>\nstream\n";
     const std::uint64_t start = out_.size();
     PdfStream stream{out_};
     PageText operators([&stream](std::string_view bytes) { stream.write(bytes); });
     PdfContent content(*page.page, operators, page.scale, progress_);
-    write(content);
+    form ? content.write_form(*form) : content.write_page();
     operators.flush();
     stream.finish();
     const std::uint64_t end = out_.size();
     out_ << "\nendstream\nendobj\n";
-    begin(length_object);
-    out_.integer(std::int64_t(end - start)) << "\nendobj\n";
+    begin(length_object) << (end - start) << "\nendobj\n";
     return content.states();
   }
 
@@ -337,7 +325,7 @@ class PdfWriter {
       out_.fixed(thousandths(side)) << ' ';
     out_ << "] /Group << /S /Transparency /I true >> /Resources << ";
     write_all_states(states) << ">> ";
-    (void)write_stream(page, form.object + 1, [&](PdfContent& content) { content.write_alone(group); });
+    (void)write_stream(page, &group, form.object + 1);
   }
 
   PageText& write_all_states(const States& states) {
@@ -355,8 +343,7 @@ class PdfWriter {
   void write_states(const PdfContent::Opacities& used, const char* name, const char* key) {
     for (std::size_t i = 0; i < used.size(); ++i) {
       if (!used[i]) continue;
-      out_ << name;
-      out_.integer(std::int64_t(i)) << " << " << key << ' ';
+      out_ << name << i << " << " << key << ' ';
       out_.fixed(thousandths(double(i) / 255)) << " >> ";
     }
   }
@@ -367,25 +354,20 @@ class PdfWriter {
     // The size is rounded down, because rasterizers round up.
     out_.fixed(std::int64_t(page.page->width * page.scale * 1e6), 6) << ' ';
     out_.fixed(std::int64_t(page.page->height * page.scale * 1e6), 6) << "]";
-    if (page.unit > 1) {
-      out_ << " /UserUnit ";
-      out_.integer(std::int64_t(page.unit));
-    }
+    if (page.unit > 1) out_ << " /UserUnit " << std::int64_t(page.unit);
     out_ << "\n/Resources << ";
     write_all_states(states);
     if (!page.forms.empty()) {
       out_ << "/XObject << ";
       for (std::size_t i = 0; i < page.forms.size(); ++i) {
-        out_ << "/G";
-        out_.integer(std::int64_t(i)) << ' ';
+        out_ << "/G" << i << ' ';
         reference(page.forms[i].object);
       }
       out_ << ">> ";
     }
     out_ << "/Properties << ";
     for (std::size_t i = 0; i < page.layers.size(); ++i) {
-      out_ << "/L";
-      out_.integer(std::int64_t(i)) << ' ';
+      out_ << "/L" << i << ' ';
       reference(layers_[page.layers[i]].object);
     }
     out_ << ">> >> >>\nendobj\n";
@@ -394,22 +376,19 @@ class PdfWriter {
   void write_end() {
     begin(page_tree) << "<< /Type /Pages /Kids [ ";
     for (const PdfPage& page : pages_) reference(page.object);
-    out_ << "] /Count ";
-    out_.integer(std::int64_t(pages_.size())) << " >>\nendobj\n";
+    out_ << "] /Count " << pages_.size() << " >>\nendobj\n";
     begin(info) << "<< /Producer (Frontmost) /Title " << pdf_text(pages_[0].page->title) << " >>\nendobj\n";
     begin(catalog) << "<< /Type /Catalog /Pages 2 0 R /OCProperties << /OCGs [ ";
     layer_references() << "] /D << /Order [ ";
     layer_references() << "] >> >> >>\nendobj\n";
     const std::uint64_t table = out_.size();
-    out_ << "xref\n0 ";
-    out_.integer(std::int64_t(places_.size())) << "\n0000000000 65535 f \n";
+    out_ << "xref\n0 " << places_.size() << "\n0000000000 65535 f \n";
     for (std::size_t i = 1; i < places_.size(); ++i) {
       const std::string digits = std::to_string(places_[i]);
       out_ << std::string(10 - std::min<std::size_t>(digits.size(), 10), '0') << digits << " 00000 n \n";
     }
-    out_ << "trailer\n<< /Size ";
-    out_.integer(std::int64_t(places_.size())) << " /Root 1 0 R /Info 6 0 R >>\nstartxref\n";
-    out_.integer(std::int64_t(table)) << "\n%%EOF\n";
+    out_ << "trailer\n<< /Size " << places_.size() << " /Root 1 0 R /Info 6 0 R >>\nstartxref\n"
+         << table << "\n%%EOF\n";
   }
 
   PageText out_;

@@ -27,21 +27,19 @@ class SvgWriter {
     millimetres(page_.width) << ' ';
     millimetres(page_.height) << "\">\n";
     if (!page_.title.empty()) out_ << "<title>" << xml_text(page_.title) << "</title>\n";
-    for (std::size_t i = 0; i < page_.layers.size(); ++i) write_layer(page_.layers[i], i + 1);
+    for (std::size_t i = 0; i < page_.layers.size(); ++i) {
+      const PageLayer& layer = page_.layers[i];
+      out_ << "<g id=\"layer" << (i + 1) << "\" inkscape:groupmode=\"layer\" inkscape:label=\"" << xml_text(layer.name)
+           << "\">\n";
+      for (const PageGroup& group : layer.groups) write_group(group);
+      out_ << "</g>\n";
+    }
     out_ << "</svg>\n";
     out_.flush();
   }
 
  private:
   PageText& millimetres(double value) { return out_.fixed(thousandths(value)); }
-
-  void write_layer(const PageLayer& layer, std::size_t number) {
-    out_ << "<g id=\"layer";
-    out_.integer(std::int64_t(number)) << "\" inkscape:groupmode=\"layer\" inkscape:label=\"" << xml_text(layer.name)
-                                       << "\">\n";
-    for (const PageGroup& group : layer.groups) write_group(group);
-    out_ << "</g>\n";
-  }
 
   void write_group(const PageGroup& group) {
     out_ << "<g";
@@ -55,8 +53,13 @@ class SvgWriter {
       color("stroke", group.pen.color);
       out_ << " stroke-width=\"";
       millimetres(group.pen.width) << "\" stroke-linecap=\"round\" stroke-linejoin=\"round\"";
+      const std::vector<double>& dashes = group.pen.dashes;
+      for (std::size_t i = 0; i < dashes.size(); ++i) {
+        out_ << (i == 0 ? " stroke-dasharray=\"" : " ");
+        millimetres(dashes[i]);
+      }
+      if (!dashes.empty()) out_ << '"';
     }
-    if (has_lines && !group.pen.dashes.empty()) write_dashes(group.pen.dashes);
     if (group.fills.empty()) out_ << " fill=\"none\"";
     out_ << ">\n";
     if (group.fills.empty()) {
@@ -68,15 +71,6 @@ class SvgWriter {
       }
     }
     out_ << "</g>\n";
-  }
-
-  void write_dashes(const std::vector<double>& dashes) {
-    out_ << " stroke-dasharray=\"";
-    for (std::size_t i = 0; i < dashes.size(); ++i) {
-      if (i > 0) out_ << ' ';
-      millimetres(dashes[i]);
-    }
-    out_ << '"';
   }
 
   /// Each line is an element, so that editors can remove or change it alone.
@@ -91,11 +85,10 @@ class SvgWriter {
       }
       if (dots == 0) out_ << "<path d=\"";
       write_path(group, path);
-      if (is_dot) {
+      if (is_dot)
         ++dots;
-      } else {
+      else
         out_ << "\"/>\n";
-      }
     }
     if (dots > 0) out_ << "\"/>\n";
   }
@@ -104,11 +97,10 @@ class SvgWriter {
     const PathPaint paint = paint_of(group, i);
     if (!paint.is_seen()) return;
     out_ << "<path";
-    if (paint.fill) {
+    if (paint.fill)
       color("fill", *paint.fill);
-    } else {
+    else
       out_ << " fill=\"none\"";
-    }
     out_ << " d=\"";
     do write_path(group, group.paths[i]);
     while (++i < group.paths.size() && group.paths[i].is_part);
@@ -139,11 +131,7 @@ class SvgWriter {
       const std::optional<Arc> arc = arc_between(join.from, join.to, join.bulge);
       if (path.is_closed && i + 1 == joins && !arc) break;  // z draws this join
       const glm::i64vec2 to = thousandths(join.to);
-      if (arc) {
-        turn(*arc, to - at);
-      } else {
-        step(to - at);
-      }
+      arc ? turn(*arc, to - at) : step(to - at);
       at = to;
     }
     if (path.is_closed) out_ << 'z';

@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-//           |                 A circle seen along its axis gets a cross; a cylinder seen from the side gets its axis.
+//           |                 A circle seen along its axis has a cross; a cylinder seen from the side has its axis.
 //        .--+--.              Both are a little longer than the round itself. All are pieces of straight lines,
 //     --(---+---)--           sorted by direction, by the line's distance from the corner of the picture, and along
 //        '--+--'              the line.
 //           |
-// A piece is joined to the one before on the same line if a drafter would draw across the gap. So concentric circles
-// share a cross, and a stepped bore has one axis. Axes are joined before they are lengthened.
+// A piece is joined to the one before on the same line if a drafter would draw across the gap.
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <tuple>
 
-#include "frontmost/lines.h"
 #include "rounds/found_rounds.h"
 
 namespace frontmost {
@@ -75,46 +71,41 @@ std::vector<AxisPiece> joined_pieces(std::vector<AxisPiece> pieces, double same_
   return all;
 }
 
-class CentreLiner {
- public:
-  CentreLiner(const View& view, double overshoot) : view_(view), overshoot_(overshoot) {
-    pixels_ = view.width / (view.projection.right - view.projection.left);
-  }
-
+struct CentreLiner {
   void add(const Round& round, double drawn) {
-    const double radius = round.radius * pixels_, length = glm::distance(round.from, round.to) * pixels_;
-    if (radius < kLeastSize * overshoot_) return;
-    if (glm::length(glm::cross(round.axis, view_.forward())) <= kSquare) {
-      if (drawn >= kLeastDrawn * round.turn * radius) add_cross(on_screen(view_, round.from), radius);
-    } else if (std::abs(glm::dot(round.axis, view_.forward())) <= kSquare && drawn >= kLeastDrawn * length) {
+    const double radius = round.radius * pixels, length = glm::distance(round.from, round.to) * pixels;
+    if (radius < kLeastSize * overshoot) return;
+    if (glm::length(glm::cross(round.axis, view.forward())) <= kSquare) {
+      if (drawn >= kLeastDrawn * round.turn * radius) add_cross(on_screen(view, round.from), radius);
+    } else if (std::abs(glm::dot(round.axis, view.forward())) <= kSquare && drawn >= kLeastDrawn * length) {
       // A circle that is seen from the side appears as a line. It has no length along its axis, but may lengthen the
       // axis of other rounds.
       if (drawn < kLeastDrawn * radius) return;
-      const glm::dvec2 middle = on_screen(view_, (round.from + round.to) * 0.5);
-      const glm::dvec2 ahead = on_screen(view_, (round.from + round.to) * 0.5 + round.axis) - middle;
+      const glm::dvec2 middle = on_screen(view, (round.from + round.to) * 0.5);
+      const glm::dvec2 ahead = on_screen(view, (round.from + round.to) * 0.5 + round.axis) - middle;
       const glm::dvec2 half = glm::normalize(ahead) * std::max(length / 2, 1e-6);
-      axes_.push_back(piece_between(middle - half, middle + half, radius));
+      axes.push_back(piece_between(middle - half, middle + half, radius));
     }
   }
 
   void add_cross(const glm::dvec2& centre, double radius) {
-    if (radius < kLeastSize * overshoot_) return;
+    if (radius < kLeastSize * overshoot) return;
     const double reach = radius + beyond(radius);
     for (const glm::dvec2 arm : {glm::dvec2(reach, 0), glm::dvec2(0, reach)})
-      crosses_.push_back(piece_between(centre - arm, centre + arm, radius));
+      crosses.push_back(piece_between(centre - arm, centre + arm, radius));
   }
 
   [[nodiscard]] std::vector<CentreLine> run() const {
-    const double same_line = kSameLine * overshoot_;
-    std::vector<AxisPiece> pieces = joined_pieces(axes_, same_line, [&](const AxisPiece& a, const AxisPiece& b) {
-      return b.begin - a.end <= std::max(kWidestGap * overshoot_, kWidestGapInRadii * std::min(a.radius, b.radius));
+    const double same_line = kSameLine * overshoot;
+    std::vector<AxisPiece> pieces = joined_pieces(axes, same_line, [&](const AxisPiece& a, const AxisPiece& b) {
+      return b.begin - a.end <= std::max(kWidestGap * overshoot, kWidestGapInRadii * std::min(a.radius, b.radius));
     });
     std::erase_if(pieces, [](const AxisPiece& p) { return p.end - p.begin < 1e-3; });
     for (AxisPiece& piece : pieces) {
       piece.begin -= beyond(piece.radius);
       piece.end += beyond(piece.radius);
     }
-    pieces.insert(pieces.end(), crosses_.begin(), crosses_.end());
+    pieces.insert(pieces.end(), crosses.begin(), crosses.end());
     pieces = joined_pieces(std::move(pieces), same_line,
                            [](const AxisPiece& a, const AxisPiece& b) { return b.begin <= a.end; });
     std::vector<CentreLine> lines;
@@ -125,15 +116,14 @@ class CentreLiner {
     return lines;
   }
 
- private:
   [[nodiscard]] double beyond(double radius) const {
-    return std::clamp(radius, kLeastOvershoot * overshoot_, overshoot_);
+    return std::clamp(radius, kLeastOvershoot * overshoot, overshoot);
   }
 
-  const View& view_;
-  const double overshoot_;
-  double pixels_;  ///< pixels per unit of the scene
-  std::vector<AxisPiece> axes_, crosses_;
+  const View& view;
+  const double overshoot;
+  const double pixels = view.width / (view.projection.right - view.projection.left);  ///< per unit of the scene
+  std::vector<AxisPiece> axes{}, crosses{};
 };
 
 }  // namespace
@@ -181,7 +171,7 @@ std::vector<CentreLine> centre_lines_of(const Rounds& rounds, const Drawing& dra
   if (!(options.overshoot > 0 && options.overshoot <= 1e6))
     throw Error(ErrorCode::bad_argument, "overshoot", "must be above 0, and at most a million pixels");
   if (!drawing.view.projection.orthographic) return {};
-  CentreLiner liner(drawing.view, options.overshoot);
+  CentreLiner liner{drawing.view, options.overshoot};
   const std::vector<double> lengths = drawn_lengths(rounds, drawing, options.with_hidden);
   for (std::size_t i = 0; i < lengths.size(); ++i) liner.add(rounds.rounds[i], lengths[i]);
   for (const Stroke& stroke : strokes.strokes) {

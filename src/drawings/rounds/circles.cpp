@@ -1,77 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds circles among the sharp edges of a mesh, and cylinders (walls) that begin at circles or at two smooth
-// neighbours.
+// Circles among the sharp edges of a mesh, and cylinders (walls) that begin at them or at two smooth neighbours.
 //
 //    corners of a chain     0   1   2   3   4   5   6   7   8   9 ...
 //    tried                  |---------------|  4 sides fit, then 8, until some do not; then the step is halved
 //
-// A circle goes through the first, middle and last vertex of a run. Arcs of one circle are united, whatever chains they
-// are in, because a rim is split wherever another edge meets it.
-//
-// A wall grows over all smooth neighbours that are parallel to its axis and have their vertices at its radius. Walls
-// from circles come first, because a circle determines the axis better than two neighbours do. The tube of a wall that
-// begins at two neighbours is fitted again as the wall grows.
+// A circle goes through the first, middle and last vertex of a run. Arcs of one circle are united, because a rim is
+// split wherever another edge meets it. A wall grows over all smooth neighbours that are parallel to its axis and have
+// their vertices at its radius. Two neighbours determine its axis worse than a circle, so their tube is fitted again.
 #include <algorithm>
 #include <map>
 #include <numbers>
 #include <tuple>
 
 #include "base/parallel.h"
-#include "lines/lists.h"
+#include "lines/strokes/parts.h"
 #include "rounds/found_rounds.h"
 
 namespace frontmost::lines_detail {
 namespace {
 
 constexpr double kShortestArc = 40 * std::numbers::pi / 180;
-constexpr double kWhole = 2 * std::numbers::pi;
 constexpr double kSmallestRadius = 50;  // in units of noise: smaller circles cannot be told from polygons
 constexpr double kSameCircle = 64;      // in units of noise: the uncertainty of the centres of short arcs
-constexpr std::size_t kLongestTry = std::size_t(1) << 20;
+constexpr std::size_t kLargestStep = std::size_t(1) << 20;
 
-class RunFinder {
- public:
-  RunFinder(const SmoothMesh& mesh, const SharpChains& all, const SharpChain& chain)
-      : mesh_(mesh), all_(all), chain_(chain), sides_(chain.edges.size()) {}
-
+struct RunFinder {
   void append_to(std::vector<FoundCircle>& found) const {
-    if (chain_.is_closed && sides_ >= 18) {
-      if (const auto circle = whole_circle()) {
-        found.push_back({*circle, {{corner(0), corner(0), kWhole}}, triangles_of(0, sides_)});
-        return;
-      }
+    if (chain.is_closed && sides >= 18) {
+      const auto circle = circle_through(corner(0), corner(sides / 3), corner(2 * sides / 3));
+      const auto turn = circle ? turn_along(*circle, 0, sides) : std::nullopt;
+      if (turn && std::abs(std::abs(*turn) - kWhole) < 1e-6)
+        return found.push_back({*circle, {{corner(0), corner(0), kWhole}}, triangles_of(0, sides)});
     }
-    // A closed chain is searched from its first vertex, which may lie in the middle of an arc. Such an arc is found in
-    // two parts, which are united later.
-    for (std::size_t at = 0; at + kFewestSides <= sides_;) {
-      const std::size_t end = longest_run(at);
-      if (end == at) {
-        ++at;
-        continue;
-      }
+    // The first vertex of a closed chain may lie in the middle of an arc, whose two parts are united later.
+    for (std::size_t at = 0; at + kFewestSides <= sides;) {
+      const std::size_t end = longest_run(
+          at, kFewestSides, sides, [&](std::size_t last) { return fit(at, last).has_value(); }, kLargestStep);
       // A circle through three points has their orientation.
-      if (const auto arc = fit(at, end); arc->second >= kShortestArc)
+      if (const auto arc = end > at ? fit(at, end) : std::nullopt; arc && arc->second >= kShortestArc)
         found.push_back({arc->first, {{corner(at), corner(end), arc->second}}, triangles_of(at, end)});
-      at = end;
+      at = std::max(at + 1, end);
     }
   }
 
- private:
   [[nodiscard]] glm::dvec3 corner(std::size_t i) const {
-    return mesh_.mesh.positions[chain_.vertices[i % chain_.vertices.size()]];
+    return mesh.mesh.positions[chain.vertices[i % chain.vertices.size()]];
   }
 
   /// The angle that the sides from `first` to `last` cover around the circle; none if these sides are not chords of the
   /// circle.
   [[nodiscard]] std::optional<double> turn_along(const Circle3& circle, std::size_t first, std::size_t last) const {
-    if (!(circle.radius >= kSmallestRadius * mesh_.noise)) return std::nullopt;
+    if (!(circle.radius >= kSmallestRadius * mesh.noise)) return std::nullopt;
     double turn = 0;
     for (std::size_t i = first; i < last; ++i) {
       const double by = circle.turn_between(corner(i), corner(i + 1));
       if (!(std::abs(by) <= kWidestStep && by * turn >= 0)) return std::nullopt;
       turn += by;
     }
-    const double slack = std::max(mesh_.noise, sagitta(circle.radius, turn / double(last - first)) / 4);
+    const double slack = std::max(mesh.noise, sagitta(circle.radius, turn / double(last - first)) / 4);
     for (std::size_t i = first; i <= last; ++i)
       if (!(circle.distance(corner(i)) <= slack)) return std::nullopt;
     return turn;
@@ -85,40 +71,20 @@ class RunFinder {
     return std::pair(*circle, *turn);
   }
 
-  [[nodiscard]] std::optional<Circle3> whole_circle() const {
-    const auto circle = circle_through(corner(0), corner(sides_ / 3), corner(2 * sides_ / 3));
-    if (!circle) return std::nullopt;
-    const auto turn = turn_along(*circle, 0, sides_);
-    return turn && std::abs(std::abs(*turn) - kWhole) < 1e-6 ? circle : std::nullopt;
-  }
-
-  [[nodiscard]] std::size_t longest_run(std::size_t first) const {
-    std::size_t fits = first + kFewestSides;
-    if (fits > sides_ || !fit(first, fits)) return first;
-    std::size_t step = kFewestSides;
-    while (fits < sides_ && step < kLongestTry && fit(first, std::min(sides_, fits + step))) {
-      fits = std::min(sides_, fits + step);
-      step *= 2;
-    }
-    for (; step > 0; step /= 2)
-      if (fits + step <= sides_ && fit(first, fits + step)) fits += step;
-    return fits;
-  }
-
   [[nodiscard]] std::vector<std::uint32_t> triangles_of(std::size_t first, std::size_t last) const {
     std::vector<std::uint32_t> triangles;
     for (std::size_t i = first; i < last; ++i) {
-      const SharpEdge& edge = all_.edges[chain_.edges[i]];
+      const SharpEdge& edge = all.edges[chain.edges[i]];
       triangles.push_back(edge.left);
       if (edge.right != no_index) triangles.push_back(edge.right);
     }
     return triangles;
   }
 
-  const SmoothMesh& mesh_;
-  const SharpChains& all_;
-  const SharpChain& chain_;
-  const std::size_t sides_;
+  const SmoothMesh& mesh;
+  const SharpChains& all;
+  const SharpChain& chain;
+  const std::size_t sides = chain.edges.size();
 };
 
 /// Unites arcs that lie on one circle.
@@ -175,25 +141,69 @@ constexpr double kWholeSagitta = 1.05;  // times the sagitta of the mean side
 constexpr double kSmallestTube = 50;
 constexpr std::size_t kFewestTriangles = 8;
 
+/// The tube about this axis that fits the points best (I. Kasa's fit of circles). None if the points lie on a line.
+std::optional<Tube> tube_through(std::span<const glm::dvec3> points, const glm::dvec3& axis) {
+  const Across across(axis);
+  glm::dvec3 middle(0);
+  for (const glm::dvec3& p : points) middle += p;
+  middle /= double(points.size());
+  // x^2 + y^2 = 2 a x + 2 b y + c, about the middle: sums of x and y are 0.
+  double xx = 0, xy = 0, yy = 0, xs = 0, ys = 0, squares = 0;
+  for (const glm::dvec3& p : points) {
+    const double x = glm::dot(p - middle, across.u), y = glm::dot(p - middle, across.v), s = x * x + y * y;
+    xx += x * x;
+    xy += x * y;
+    yy += y * y;
+    xs += x * s;
+    ys += y * s;
+    squares += s;
+  }
+  const double determinant = 2 * (xx * yy - xy * xy);
+  if (!(determinant > 1e-14 * squares * squares)) return std::nullopt;
+  const double a = (xs * yy - ys * xy) / determinant, b = (ys * xx - xs * xy) / determinant;
+  const double radius = std::sqrt(squares / double(points.size()) + a * a + b * b);
+  if (!std::isfinite(radius)) return std::nullopt;
+  return Tube{middle + a * across.u + b * across.v, axis, radius};
+}
+
+/// The direction that is closest to perpendicular to all vectors.
+glm::dvec3 common_perpendicular(std::span<const glm::dvec3> vectors) {
+  glm::dmat3 sum(0);
+  for (const glm::dvec3& n : vectors) sum += glm::outerProduct(n, n);
+  // The adjugate's powers converge to the eigenvector of the least eigenvalue.
+  const auto adjugate = [](const glm::dmat3& m) {
+    return glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  };
+  glm::dmat3 power = adjugate(sum);
+  for (int i = 0; i < 4; ++i) {
+    const double trace = power[0][0] + power[1][1] + power[2][2];
+    if (!(trace > 0)) return glm::dvec3(0, 0, 1);
+    power /= trace;
+    power = power * power;
+  }
+  glm::dvec3 longest = power[0];
+  for (const int i : {1, 2})
+    if (glm::dot(power[i], power[i]) > glm::dot(longest, longest)) longest = power[i];
+  return unit_of(longest, glm::dvec3(0, 0, 1));
+}
+
 /// Two triangles that might lie about an axis along their common side.
 struct Seed {
   std::uint32_t triangle;
   int side;
 };
 
-class Seeds {
- public:
-  explicit Seeds(const SmoothMesh& mesh) : mesh_(mesh) {}
+struct Seeds {
+  const SmoothMesh& mesh;
 
   [[nodiscard]] bool is_one(const Seed& seed) const {
-    const std::uint32_t other = mesh_.across(seed.triangle, seed.side);
-    if (other == no_index || other < seed.triangle || !mesh_.is_smooth(seed.triangle, seed.side)) return false;
-    if (glm::dot(mesh_.normals[seed.triangle], mesh_.normals[other]) > kFlat) return false;
-    const glm::dvec3 side = mesh_.corner(seed.triangle, (seed.side + 1) % 3) - mesh_.corner(seed.triangle, seed.side);
+    const std::uint32_t other = mesh.across(seed.triangle, seed.side);
+    if (other == no_index || other < seed.triangle || !mesh.is_smooth(seed.triangle, seed.side)) return false;
+    if (glm::dot(mesh.normals[seed.triangle], mesh.normals[other]) > kFlat) return false;
+    const glm::dvec3 side = mesh.corner(seed.triangle, (seed.side + 1) % 3) - mesh.corner(seed.triangle, seed.side);
     return goes_on(seed.triangle, other, side) && goes_on(other, seed.triangle, side);
   }
 
- private:
   /// Whether `triangle` has, apart from `before`, a smooth neighbour parallel to the axis, and no other smooth
   /// neighbour that is part of a doubly curved surface.
   [[nodiscard]] bool goes_on(std::uint32_t triangle, std::uint32_t before, const glm::dvec3& side) const {
@@ -201,8 +211,8 @@ class Seeds {
     const glm::dvec3 axis = side / length;
     bool has_one = false;
     for (int k = 0; k < 3; ++k) {
-      const std::uint32_t next = mesh_.across(triangle, k);
-      if (next == before || !mesh_.is_smooth(triangle, k)) continue;
+      const std::uint32_t next = mesh.across(triangle, k);
+      if (next == before || !mesh.is_smooth(triangle, k)) continue;
       if (std::abs(lean(next, axis)) <= kUpright)
         has_one = true;
       else if (2 * height(next, axis) > length && leans_on(next, axis))
@@ -211,19 +221,18 @@ class Seeds {
     return has_one;
   }
 
-  /// Whether the next ring leans twice as much as `triangle`, as on a sphere or a torus. The triangle is then beside a
-  /// ring of such a surface, which is no cylinder. In contrast, a fillet leans by half a step where it begins at a
-  /// wall, and by three halves of a step in the next ring; a slight chamfer does not lean more in the next ring.
+  /// Whether the next ring leans twice as much as this triangle, as beside a ring of a sphere or torus, which is no
+  /// cylinder. A fillet leans by half a step and then by three halves; a slight chamfer does not lean more.
   [[nodiscard]] bool leans_on(std::uint32_t triangle, const glm::dvec3& axis) const {
     const double first = lean(triangle, axis);
     const auto is_twice = [&](std::uint32_t t) { return std::abs(lean(t, axis) / first - 2) < 0.4; };
     for (int k = 0; k < 3; ++k) {
-      if (!mesh_.is_smooth(triangle, k)) continue;
-      const std::uint32_t next = mesh_.across(triangle, k);
+      if (!mesh.is_smooth(triangle, k)) continue;
+      const std::uint32_t next = mesh.across(triangle, k);
       if (is_twice(next)) return true;
       // The next ring may begin beyond the other half of the triangle's quad.
       for (int j = 0; j < 3; ++j)
-        if (mesh_.is_smooth(next, j) && is_twice(mesh_.across(next, j))) return true;
+        if (mesh.is_smooth(next, j) && is_twice(mesh.across(next, j))) return true;
     }
     return false;
   }
@@ -231,154 +240,143 @@ class Seeds {
   /// The extent of a triangle along the axis.
   [[nodiscard]] double height(std::uint32_t triangle, const glm::dvec3& axis) const {
     double at[3];
-    for (int k = 0; k < 3; ++k) at[k] = glm::dot(mesh_.corner(triangle, k), axis);
+    for (int k = 0; k < 3; ++k) at[k] = glm::dot(mesh.corner(triangle, k), axis);
     return *std::max_element(at, at + 3) - *std::min_element(at, at + 3);
   }
 
   /// The angle between a triangle and the axis; 0 if it is parallel to the axis.
   [[nodiscard]] double lean(std::uint32_t triangle, const glm::dvec3& axis) const {
-    return std::asin(std::clamp(glm::dot(mesh_.normals[triangle], axis), -1.0, 1.0));
+    return std::asin(std::clamp(glm::dot(mesh.normals[triangle], axis), -1.0, 1.0));
   }
-
-  const SmoothMesh& mesh_;
 };
 
-class WallGrower {
- public:
-  explicit WallGrower(const SmoothMesh& mesh) : mesh_(mesh), is_used_(mesh.mesh.triangles.size()) {}
-
-  /// Grows a wall from a seed. None if the seed's surface is no cylinder, or is already part of one. Triangles that
-  /// earlier calls took are skipped.
-  [[nodiscard]] std::optional<FoundWall> grow(const Seed& seed) {
-    const std::uint32_t other = mesh_.across(seed.triangle, seed.side);
-    if (is_used_[seed.triangle] || is_used_[other] || !start(seed, other)) return std::nullopt;
+struct WallGrower {
+  /// None if the seed's surface is no cylinder, or already part of one.
+  [[nodiscard]] std::optional<FoundRound> grow(const Seed& seed) {
+    const std::uint32_t other = mesh.across(seed.triangle, seed.side);
+    if (is_used[seed.triangle] || is_used[other] || !start(seed, other)) return std::nullopt;
     return grown(true);
   }
 
   /// Grows a wall from `triangle`, which has a side on `circle`, if the triangle is parallel to the circle's axis.
   /// `step` is the angle of a side. With `may_be_cut`, vertices may also lie inside of the radius, on chords, because
   /// something else cuts the wall there. A circle is precise enough to allow that.
-  [[nodiscard]] std::optional<FoundWall> grow(const Circle3& circle, double step, std::uint32_t triangle,
-                                              bool may_be_cut) {
-    if (is_used_[triangle]) return std::nullopt;
-    tube_ = {circle.centre, circle.axis, circle.radius};
-    slack_ = std::max(mesh_.noise, sagitta(circle.radius, step) / 4);
-    within_ = may_be_cut ? std::max(slack_, kWholeSagitta * sagitta(circle.radius, step)) : slack_;
-    outside_ = glm::dot(mesh_.normals[triangle], tube_.outwards(mesh_.corner(triangle, 0))) > 0 ? 1 : -1;
+  [[nodiscard]] std::optional<FoundRound> grow(const Circle3& circle, double step, std::uint32_t triangle,
+                                               bool may_be_cut) {
+    if (is_used[triangle]) return std::nullopt;
+    current = {circle.centre, circle.axis, circle.radius};
+    slack = std::max(mesh.noise, sagitta(circle.radius, step) / 4);
+    within = may_be_cut ? std::max(slack, kWholeSagitta * sagitta(circle.radius, step)) : slack;
+    outside = glm::dot(mesh.normals[triangle], current.outwards(mesh.corner(triangle, 0))) > 0 ? 1 : -1;
     if (!holds(triangle)) return std::nullopt;
-    triangles_.clear();
+    triangles.clear();
     take(triangle);
     return grown(false);
   }
 
- private:
-  /// Grows the wall from the current triangles. With `fits`, the tube is fitted again as the wall grows. The axis of a
-  /// circle is better than a fit to few triangles, so walls from circles are not fitted.
-  std::optional<FoundWall> grown(bool fits) {
-    std::size_t fitted = std::max(triangles_.size(), kFewestTriangles / 2);
-    for (std::size_t i = 0; i < triangles_.size(); ++i) {
+  /// Grows the current triangles. The axis of a circle is not fitted.
+  std::optional<FoundRound> grown(bool fits) {
+    std::size_t fitted = std::max(triangles.size(), kFewestTriangles / 2);
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
       for (int k = 0; k < 3; ++k) {
-        if (!mesh_.is_smooth(triangles_[i], k)) continue;
-        const std::uint32_t next = mesh_.across(triangles_[i], k);
-        if (!is_used_[next] && holds(next)) take(next);
+        if (!mesh.is_smooth(triangles[i], k)) continue;
+        const std::uint32_t next = mesh.across(triangles[i], k);
+        if (!is_used[next] && holds(next)) take(next);
       }
-      if (!fits || triangles_.size() < 2 * fitted) continue;
-      fitted = triangles_.size();
+      if (!fits || triangles.size() < 2 * fitted) continue;
+      fitted = triangles.size();
       if (!fit()) break;
     }
-    if (triangles_.size() >= kFewestTriangles) {
+    if (triangles.size() >= kFewestTriangles) {
       if (!fits || (fit() && holds_all())) return measured();
       return std::nullopt;
     }
     // Too few triangles are released again, because they may belong to a wall that begins with a better axis.
-    for (const std::uint32_t t : triangles_) is_used_[t] = false;
+    for (const std::uint32_t t : triangles) is_used[t] = false;
     return std::nullopt;
   }
 
   bool start(const Seed& seed, std::uint32_t other) {
-    const glm::dvec3 from = mesh_.corner(seed.triangle, seed.side);
-    const glm::dvec3 to = mesh_.corner(seed.triangle, (seed.side + 1) % 3);
-    const glm::dvec3 left = mesh_.corner(seed.triangle, (seed.side + 2) % 3);
+    const glm::dvec3 from = mesh.corner(seed.triangle, seed.side);
+    const glm::dvec3 to = mesh.corner(seed.triangle, (seed.side + 1) % 3);
+    const glm::dvec3 left = mesh.corner(seed.triangle, (seed.side + 2) % 3);
     glm::dvec3 right = from;
     for (int k = 0; k < 3; ++k)
-      if (const glm::dvec3 at = mesh_.corner(other, k); at != from && at != to) right = at;
+      if (const glm::dvec3 at = mesh.corner(other, k); at != from && at != to) right = at;
     const glm::dvec3 points[] = {from, left, right};
     const auto tube = tube_through(points, glm::normalize(to - from));
-    if (!tube || !(tube->radius >= kSmallestTube * mesh_.noise)) return false;
-    tube_ = *tube;
-    const double step = std::acos(std::min(1.0, glm::dot(mesh_.normals[seed.triangle], mesh_.normals[other])));
-    slack_ = within_ = std::max(mesh_.noise, sagitta(tube_.radius, step) / 4);
-    outside_ = glm::dot(mesh_.normals[seed.triangle], tube_.outwards(from)) > 0 ? 1 : -1;
-    triangles_.clear();
+    if (!tube || !(tube->radius >= kSmallestTube * mesh.noise)) return false;
+    current = *tube;
+    const double step = std::acos(std::min(1.0, glm::dot(mesh.normals[seed.triangle], mesh.normals[other])));
+    slack = within = std::max(mesh.noise, sagitta(current.radius, step) / 4);
+    outside = glm::dot(mesh.normals[seed.triangle], current.outwards(from)) > 0 ? 1 : -1;
+    triangles.clear();
     take(seed.triangle);
     take(other);
     return true;
   }
 
   void take(std::uint32_t triangle) {
-    is_used_[triangle] = true;
-    triangles_.push_back(triangle);
+    is_used[triangle] = true;
+    triangles.push_back(triangle);
   }
 
   [[nodiscard]] bool holds(std::uint32_t triangle) const {
-    const glm::dvec3& normal = mesh_.normals[triangle];
-    if (std::abs(glm::dot(normal, tube_.axis)) > kRoughlyUpright) return false;
+    const glm::dvec3& normal = mesh.normals[triangle];
+    if (std::abs(glm::dot(normal, current.axis)) > kRoughlyUpright) return false;
     for (int k = 0; k < 3; ++k) {
-      const glm::dvec3 at = mesh_.corner(triangle, k), out = tube_.outwards(at);
+      const glm::dvec3 at = mesh.corner(triangle, k), out = current.outwards(at);
       const double length = glm::length(out);
-      if (!(length - tube_.radius <= slack_ && tube_.radius - length <= within_ &&
-            outside_ * glm::dot(normal, out) >= kFacesOut * length))
+      if (!(length - current.radius <= slack && current.radius - length <= within &&
+            outside * glm::dot(normal, out) >= kFacesOut * length))
         return false;
     }
     return true;
   }
   [[nodiscard]] bool holds_all() const {
-    return std::all_of(triangles_.begin(), triangles_.end(), [&](std::uint32_t t) { return holds(t); });
+    return std::all_of(triangles.begin(), triangles.end(), [&](std::uint32_t t) { return holds(t); });
   }
 
   bool fit() {
     std::vector<glm::dvec3> normals, points;
-    for (const std::uint32_t t : triangles_) {
+    for (const std::uint32_t t : triangles) {
       // The first ring of a fillet may lie within the tolerance of the radius, but is not part of the wall.
-      if (std::abs(glm::dot(mesh_.normals[t], tube_.axis)) > kUpright) continue;
-      normals.push_back(mesh_.normals[t]);
-      for (int k = 0; k < 3; ++k) points.push_back(mesh_.corner(t, k));
+      if (std::abs(glm::dot(mesh.normals[t], current.axis)) > kUpright) continue;
+      normals.push_back(mesh.normals[t]);
+      for (int k = 0; k < 3; ++k) points.push_back(mesh.corner(t, k));
     }
     const auto tube = tube_through(points, common_perpendicular(normals));
-    if (tube) tube_ = *tube;
+    if (tube) current = *tube;
     return tube.has_value();
   }
 
-  [[nodiscard]] FoundWall measured() {
-    const Across across(tube_.axis);
+  [[nodiscard]] FoundRound measured() {
+    const Across across(current.axis);
     std::vector<double> angles;
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const std::uint32_t t : triangles_)
+    for (const std::uint32_t t : triangles)
       for (int k = 0; k < 3; ++k) {
-        const glm::dvec3 at = mesh_.corner(t, k), out = tube_.outwards(at);
+        const glm::dvec3 at = mesh.corner(t, k), out = current.outwards(at);
         angles.push_back(std::atan2(glm::dot(out, across.v), glm::dot(out, across.u)));
-        low = std::min(low, glm::dot(at - tube_.point, tube_.axis));
-        high = std::max(high, glm::dot(at - tube_.point, tube_.axis));
+        low = std::min(low, glm::dot(at - current.point, current.axis));
+        high = std::max(high, glm::dot(at - current.point, current.axis));
       }
     std::sort(angles.begin(), angles.end());
     double gap = angles.front() + kWhole - angles.back();
     for (std::size_t i = 1; i < angles.size(); ++i) gap = std::max(gap, angles[i] - angles[i - 1]);
-    std::sort(triangles_.begin(), triangles_.end());
-    return {tube_.point + low * tube_.axis,
-            tube_.point + high * tube_.axis,
-            tube_.axis,
-            tube_.radius,
-            gap <= kWidestStep ? kWhole : kWhole - gap,
-            outside_ < 0,
-            triangles_};
+    std::sort(triangles.begin(), triangles.end());
+    const double turn = gap <= kWidestStep ? kWhole : kWhole - gap;
+    return {{RoundKind::cylinder, current.point + low * current.axis, current.point + high * current.axis, current.axis,
+             current.radius, turn, outside < 0},
+            triangles};
   }
 
-  const SmoothMesh& mesh_;
-  std::vector<bool> is_used_;
-  Tube tube_{};
-  double slack_ = 0, within_ = 0, outside_ = 1;  ///< slack_ and within_: how far vertices may lie outside and inside of
-                                                 ///< the radius; outside_: 1, or -1 if hollow
-  std::vector<std::uint32_t> triangles_;
+  const SmoothMesh& mesh;
+  std::vector<bool> is_used = std::vector<bool>(mesh.mesh.triangles.size());
+  Tube current{};
+  double slack = 0, within = 0, outside = 1;  ///< slack_ and within_: how far vertices may lie outside and inside of
+                                              ///< the radius; outside_: 1, or -1 if hollow
+  std::vector<std::uint32_t> triangles{};
 };
 
 }  // namespace
@@ -406,7 +404,7 @@ std::vector<FoundCircle> find_circles(const SmoothMesh& mesh, const Execution& e
   std::vector<std::vector<FoundCircle>> lists((all.chains.size() + chains_per_part - 1) / chains_per_part);
   parallel_for(execution, all.chains.size(), chains_per_part, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      RunFinder(mesh, all, all.chains[i]).append_to(lists[begin / chains_per_part]);
+      RunFinder{mesh, all, all.chains[i]}.append_to(lists[begin / chains_per_part]);
   });
   std::vector<FoundCircle> circles;
   ArcJoiner joiner(mesh.noise, circles);
@@ -415,11 +413,11 @@ std::vector<FoundCircle> find_circles(const SmoothMesh& mesh, const Execution& e
   return circles;
 }
 
-std::vector<FoundWall> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
-                                  const Execution& execution) {
-  std::vector<FoundWall> walls;
-  WallGrower grower(mesh);
-  const auto keep = [&](std::optional<FoundWall> wall) {
+std::vector<FoundRound> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
+                                   const Execution& execution) {
+  std::vector<FoundRound> walls;
+  WallGrower grower{mesh};
+  const auto keep = [&](std::optional<FoundRound> wall) {
     if (wall) walls.push_back(std::move(*wall));
   };
   const auto grow_from_circles = [&](bool may_be_cut) {
@@ -435,7 +433,7 @@ std::vector<FoundWall> find_walls(const SmoothMesh& mesh, const std::vector<Foun
   const std::size_t count = mesh.mesh.triangles.size();
   std::vector<std::vector<Seed>> lists((count + kSeedsPerPart - 1) / kSeedsPerPart);
   parallel_for(execution, count, kSeedsPerPart, [&](std::size_t begin, std::size_t end) {
-    const Seeds seeds(mesh);
+    const Seeds seeds{mesh};
     for (auto t = std::uint32_t(begin); t < end; ++t)
       for (int k = 0; k < 3; ++k)
         if (const Seed seed{t, k}; seeds.is_one(seed)) lists[begin / kSeedsPerPart].push_back(seed);

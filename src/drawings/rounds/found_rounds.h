@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds round shapes in a mesh: circles among its sharp edges, cylinders among its smooth surfaces, and other surfaces
-// of revolution.
+// Round shapes in a mesh: circles of sharp edges, cylinders of smooth surfaces, and other surfaces of revolution.
 //
 //    sharp edges --chains--> arcs --on one circle--> circles ------+
 //                                                                  v
 //    smooth neighbours ------------------------------> walls: cylinders that begin at circles, then the others
 //    other regions that close around an axis --------> surfaces of revolution
 //
-// A polygon of a mesh counts as a circle if its steps are even, its corners lie on one circle to the precision of the
-// file, and its sides are alike.
+// A polygon counts as a circle if its steps are alike and its corners lie on one to the precision of the file.
 #pragma once
 
 #include <cmath>
@@ -65,7 +63,6 @@ struct Tube {
     const glm::dvec3 u = at - point;
     return u - glm::dot(u, axis) * axis;
   }
-  [[nodiscard]] double distance(const glm::dvec3& at) const { return std::abs(glm::length(outwards(at)) - radius); }
 };
 
 /// Two unit vectors that are perpendicular to each other and to `axis`.
@@ -74,17 +71,10 @@ struct Across {
   explicit Across(const glm::dvec3& axis);
 };
 
-/// The tube about this axis that fits the points by least squares of squared radii (I. Kasa's fit of circles). None if
-/// the points lie on a line.
-[[nodiscard]] std::optional<Tube> tube_through(std::span<const glm::dvec3> points, const glm::dvec3& axis);
-
-/// The direction that is closest to perpendicular to all vectors.
-[[nodiscard]] glm::dvec3 common_perpendicular(std::span<const glm::dvec3> vectors);
-
-/// 20.01 degrees. Two neighbouring triangles that turn by more form a sharp edge, and two sides of a polygon a corner.
-/// Arcs of strokes have the same limit.
+/// 20.01 degrees, as for arcs of strokes: a larger turn is an edge between neighbours, or a corner of a polygon.
 inline constexpr double kWidestStep = 0.34924038;
 inline constexpr double kWidestCosine = 0.93963;
+inline constexpr double kWhole = 2 * std::numbers::pi;  ///< radians of a whole turn
 
 struct SmoothMesh {
   WeldedMesh mesh;
@@ -127,9 +117,8 @@ struct SharpChains {
 
 inline constexpr std::size_t kFewestSides = 4;  ///< the fewest sides of an arc
 
-/// Joins the sharp edges of a mesh to chains. Each edge is in one chain; chains that are shorter than an arc are left
-/// out. Where several edges meet, the straightest pairs continue each other, unless the cosine of the turn is below
-/// `least_cosine`. O(edges log edges at a vertex).
+/// Chains of at least kFewestSides edges. Where several edges meet, the straightest pairs continue each other, unless
+/// the cosine of the turn is below `least_cosine`. O(edges log edges at a vertex).
 [[nodiscard]] SharpChains sharp_chains(const SmoothMesh& mesh, const Execution& execution,
                                        double least_cosine = kWidestCosine);
 
@@ -151,19 +140,17 @@ struct FoundCircle {
 /// The circles of a mesh; arcs of one circle are united. Near-linear in the number of sharp edges.
 [[nodiscard]] std::vector<FoundCircle> find_circles(const SmoothMesh& mesh, const Execution& execution);
 
-/// A cylinder among the smooth surfaces of a mesh.
-struct FoundWall {
-  glm::dvec3 from, to, axis;  ///< `from` and `to` are the ends of the cylinder on its axis; unit axis
-  double radius, turn;        ///< `turn`: the covered angle in radians, at most 2 pi
-  bool is_hollow;
-  std::vector<std::uint32_t> triangles;  ///< ascending
+/// A round with its triangles of the mesh, in place of Rounds::triangles.
+struct FoundRound {
+  Round round;
+  std::vector<std::uint32_t> triangles;
 };
 
-/// The cylinders of a mesh: first those that begin at circles, in the order of the circles; then those that begin at
-/// two smooth neighbours; last those that something cuts between their ends. Each triangle belongs to at most one
-/// cylinder. O(triangles log triangles).
-[[nodiscard]] std::vector<FoundWall> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
-                                                const Execution& execution);
+/// The cylinders of a mesh, with ascending triangles: first those that begin at circles, in the order of the circles;
+/// then those that begin at two smooth neighbours; last those that something cuts between their ends. Each triangle
+/// belongs to at most one cylinder. O(triangles log triangles).
+[[nodiscard]] std::vector<FoundRound> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
+                                                 const Execution& execution);
 
 }  // namespace frontmost::lines_detail
 

@@ -1,32 +1,18 @@
-// SPDX-License-Identifier: Apache-2.0
-// Finds surfaces of revolution and prisms, and makes the public list of all rounds.
-//
+// SPDX-License-Identifier: Apache-2.0 Finds surfaces of revolution and prisms, and makes the public list of all rounds.
 // Rings with corners at equal angles have equal moments in all directions across their axis. So the axis passes through
-// the mean of the corners, in the direction whose second moment differs from the other two, which are equal. Regions
-// that pass this test are checked ring by ring.
-//
-// A prism has two rims about one axis, each with its corners on a circle. Each rim has a key: where the point of its
-// axis nearest to the origin lies along a direction that is parallel to no usual row of holes. Rims are sorted by their
-// keys, so the other rim of a prism is among the next rims.
+// the mean of the corners, in the direction whose second moment differs from the other two, which are equal. A prism
+// has two rims about one axis, each with its corners on a circle. Rims are sorted by the point of their axis nearest to
+// the origin, along a direction that is parallel to no usual row of holes.
 #include <algorithm>
-#include <cmath>
 #include <numbers>
-#include <optional>
 
 #include "base/parallel.h"
-#include "frontmost/lines.h"
 #include "rounds/found_rounds.h"
 
 namespace frontmost {
 namespace {
 
 using namespace lines_detail;
-
-struct FoundRevolved {
-  glm::dvec3 from, to, axis;             ///< `from` and `to` are the ends of the surface on its axis; unit axis
-  double radius;                         ///< the largest radius
-  std::vector<std::uint32_t> triangles;  ///< ascending
-};
 
 constexpr std::size_t kFewestCorners = 19;  // a ring and a tip
 constexpr double kEqualMoments = 1e-5;      // share of the sum of the moments
@@ -38,13 +24,10 @@ struct Polar {
   double height, radius, angle;
 };
 
-/// The triangles that are connected with `first` by smooth edges, ascending; empty if `first` is taken. Marks these
-/// triangles as taken.
+/// Takes the triangles that are connected with `first` by smooth edges. \returns them, ascending.
 std::vector<std::uint32_t> region_from(std::uint32_t first, const SmoothMesh& mesh, std::vector<bool>& is_taken) {
-  std::vector<std::uint32_t> region;
-  if (is_taken[first]) return region;
+  std::vector<std::uint32_t> region = {first};
   is_taken[first] = true;
-  region.push_back(first);
   for (std::size_t i = 0; i < region.size(); ++i)
     for (int k = 0; k < 3; ++k) {
       if (!mesh.is_smooth(region[i], k)) continue;
@@ -84,12 +67,8 @@ std::optional<glm::dvec3> odd_direction(const glm::dmat3& moments) {
   return std::nullopt;
 }
 
-class RevolvedFinder {
- public:
-  explicit RevolvedFinder(const SmoothMesh& mesh)
-      : mesh_(mesh), slack_(kSameRing * mesh.noise), region_of_(mesh.mesh.positions.size(), no_index) {}
-
-  [[nodiscard]] std::optional<FoundRevolved> find(std::vector<std::uint32_t> region) {
+struct RevolvedFinder {
+  [[nodiscard]] std::optional<FoundRound> find(std::vector<std::uint32_t> region) {
     const std::vector<glm::dvec3> corners = corners_of(region);
     if (corners.size() < kFewestCorners) return std::nullopt;
     glm::dvec3 middle(0);
@@ -99,29 +78,36 @@ class RevolvedFinder {
     for (const glm::dvec3& p : corners) moments += glm::outerProduct(p - middle, p - middle);
     const auto axis = odd_direction(moments);
     if (!axis) return std::nullopt;
-    std::vector<Polar> polar = seen_from({middle, *axis, 0}, corners);
+    const Tube tube{middle, *axis, 0};
+    const Across across(*axis);
+    std::vector<Polar> polar;
+    for (const glm::dvec3& p : corners) {
+      const glm::dvec3 out = tube.outwards(p);
+      polar.push_back({glm::dot(p - middle, *axis), glm::length(out),
+                       std::atan2(glm::dot(out, across.v), glm::dot(out, across.u))});
+    }
     const auto by_radius = [](const Polar& a, const Polar& b) { return a.radius < b.radius; };
     const auto by_height = [](const Polar& a, const Polar& b) { return a.height < b.height; };
     const auto [thinnest, widest] = std::minmax_element(polar.begin(), polar.end(), by_radius);
     const auto [lowest, highest] = std::minmax_element(polar.begin(), polar.end(), by_height);
     const double radius = widest->radius, low = lowest->height, high = highest->height;
     // Left out: discs need no axis, walls are cylinders, and whole spheres are round about any axis.
-    if (high - low <= slack_ || radius - thinnest->radius <= slack_ || is_sphere(middle, corners)) return std::nullopt;
-    if (radius < kSmallestRevolved * mesh_.noise || !is_in_rings(polar)) return std::nullopt;
-    return FoundRevolved{middle + low * *axis, middle + high * *axis, *axis, radius, std::move(region)};
+    if (high - low <= slack || radius - thinnest->radius <= slack || is_sphere(middle, corners)) return std::nullopt;
+    if (radius < kSmallestRevolved * mesh.noise || !is_in_rings(polar)) return std::nullopt;
+    return FoundRound{{RoundKind::revolved, middle + low * *axis, middle + high * *axis, *axis, radius, kWhole},
+                      std::move(region)};
   }
 
- private:
   /// The vertices of the region, each once.
   [[nodiscard]] std::vector<glm::dvec3> corners_of(const std::vector<std::uint32_t>& region) {
     std::vector<glm::dvec3> corners;
     for (const std::uint32_t t : region)
       for (int k = 0; k < 3; ++k) {
-        const std::uint32_t vertex = mesh_.mesh.triangles[t][k];
+        const std::uint32_t vertex = mesh.mesh.triangles[t][k];
         // A region is identified by its first triangle.
-        if (region_of_[vertex] == region.front()) continue;
-        region_of_[vertex] = region.front();
-        corners.push_back(mesh_.mesh.positions[vertex]);
+        if (region_of[vertex] == region.front()) continue;
+        region_of[vertex] = region.front();
+        corners.push_back(mesh.mesh.positions[vertex]);
       }
     return corners;
   }
@@ -129,18 +115,7 @@ class RevolvedFinder {
   [[nodiscard]] bool is_sphere(const glm::dvec3& middle, const std::vector<glm::dvec3>& corners) const {
     const double radius = glm::distance(middle, corners[0]);
     return std::all_of(corners.begin(), corners.end(),
-                       [&](const glm::dvec3& p) { return std::abs(glm::distance(middle, p) - radius) <= slack_; });
-  }
-
-  [[nodiscard]] static std::vector<Polar> seen_from(const Tube& tube, const std::vector<glm::dvec3>& corners) {
-    const Across across(tube.axis);
-    std::vector<Polar> polar;
-    for (const glm::dvec3& p : corners) {
-      const glm::dvec3 out = tube.outwards(p);
-      polar.push_back({glm::dot(p - tube.point, tube.axis), glm::length(out),
-                       std::atan2(glm::dot(out, across.v), glm::dot(out, across.u))});
-    }
-    return polar;
+                       [&](const glm::dvec3& p) { return std::abs(glm::distance(middle, p) - radius) <= slack; });
   }
 
   /// Sorts the vertices by value, and splits them into runs where a gap is wider than a ring's tolerance. \returns
@@ -149,8 +124,8 @@ class RevolvedFinder {
   [[nodiscard]] bool all_runs(std::span<Polar> polar, const Value& value, const Use& use) const {
     std::sort(polar.begin(), polar.end(), [&](const Polar& a, const Polar& b) { return value(a) < value(b); });
     for (std::size_t begin = 0, end = 0; begin < polar.size(); begin = end) {
-      for (end = begin + 1; end < polar.size() && value(polar[end]) - value(polar[end - 1]) <= slack_;) ++end;
-      if (value(polar[end - 1]) - value(polar[begin]) > slack_ || !use(polar.subspan(begin, end - begin))) return false;
+      for (end = begin + 1; end < polar.size() && value(polar[end]) - value(polar[end - 1]) <= slack;) ++end;
+      if (value(polar[end - 1]) - value(polar[begin]) > slack || !use(polar.subspan(begin, end - begin))) return false;
     }
     return true;
   }
@@ -158,9 +133,9 @@ class RevolvedFinder {
   /// Whether every vertex lies on the axis, or in a ring that is closed around it.
   [[nodiscard]] bool is_in_rings(std::vector<Polar>& polar) const {
     const auto is_ring = [&](std::span<Polar> ring) {
-      if (ring.front().radius <= slack_) return true;
+      if (ring.front().radius <= slack) return true;
       std::sort(ring.begin(), ring.end(), [](const Polar& a, const Polar& b) { return a.angle < b.angle; });
-      double gap = ring.front().angle + 2 * std::numbers::pi - ring.back().angle;
+      double gap = ring.front().angle + kWhole - ring.back().angle;
       for (std::size_t i = 1; i < ring.size(); ++i) gap = std::max(gap, ring[i].angle - ring[i - 1].angle);
       return gap <= kWidestStep;
     };
@@ -172,23 +147,11 @@ class RevolvedFinder {
         });
   }
 
-  const SmoothMesh& mesh_;
-  const double slack_;
-  std::vector<std::uint32_t> region_of_;  ///< by vertex: the last region that it was in
+  const SmoothMesh& mesh;
+  const double slack = kSameRing * mesh.noise;
+  /// By vertex: the last region that it was in.
+  std::vector<std::uint32_t> region_of = std::vector<std::uint32_t>(mesh.mesh.positions.size(), no_index);
 };
-
-std::vector<FoundRevolved> find_revolved(const SmoothMesh& mesh, const Execution& execution) {
-  std::vector<FoundRevolved> found;
-  std::vector<bool> is_taken(mesh.mesh.triangles.size());
-  RevolvedFinder finder(mesh);
-  for (std::uint32_t t = 0; t < mesh.mesh.triangles.size(); ++t) {
-    if (t % 4096 == 0) check_cancelled(execution);
-    std::vector<std::uint32_t> region = region_from(t, mesh, is_taken);
-    if (region.empty()) continue;
-    if (auto revolved = finder.find(std::move(region))) found.push_back(std::move(*revolved));
-  }
-  return found;
-}
 
 constexpr std::size_t kFewestPrismSides = 7, kMostPrismSides = 17;
 constexpr double kWidestPrismTurn = 0.91;  // radians, a little more than the turn between two of seven sides
@@ -215,7 +178,7 @@ std::optional<Circle3> circle_of(const SmoothMesh& mesh, const SharpChain& chain
     if (!(circle->distance(corner(i)) <= slack && by > 0 && by <= kWidestPrismTurn)) return std::nullopt;
     turn += by;
   }
-  return turn < 2 * std::numbers::pi + 1e-3 ? circle : std::nullopt;
+  return turn < kWhole + 1e-3 ? circle : std::nullopt;
 }
 
 bool are_ends_of_one(const PrismRim& a, const PrismRim& b) {
@@ -227,8 +190,7 @@ bool are_ends_of_one(const PrismRim& a, const PrismRim& b) {
          glm::length(glm::cross(a.circle.axis, b.circle.axis)) <= kSamePrism;
 }
 
-/// The prisms of a mesh, with a sharp rim at either end. O(sharp edges log sharp edges), and at most 4096 comparisons
-/// for each rim.
+/// O(sharp edges log sharp edges), and at most 4096 comparisons for each rim.
 std::vector<Round> find_prisms(const SmoothMesh& mesh, const Execution& execution) {
   const SharpChains all = sharp_chains(mesh, execution, std::cos(kWidestPrismTurn));
   std::vector<PrismRim> rims;
@@ -248,8 +210,7 @@ std::vector<Round> find_prisms(const SmoothMesh& mesh, const Execution& executio
       if (!are_ends_of_one(rim, rims[k])) continue;
       rim.is_used = rims[k].is_used = true;
       const Circle3& circle = rim.circle;
-      found.push_back({RoundKind::cylinder, circle.centre, rims[k].circle.centre, circle.axis, circle.radius,
-                       2 * std::numbers::pi});
+      found.push_back({RoundKind::cylinder, circle.centre, rims[k].circle.centre, circle.axis, circle.radius, kWhole});
     }
   }
   return found;
@@ -257,16 +218,17 @@ std::vector<Round> find_prisms(const SmoothMesh& mesh, const Execution& executio
 
 constexpr double kLeastTurn = 160 * std::numbers::pi / 180;
 
-/// Appends a round with these triangles of the mesh.
-void append(Round round, const std::vector<std::uint32_t>& triangles, const WeldedMesh& mesh, Rounds& all) {
+/// Appends a round, unless too little of it exists.
+void append(const FoundRound& found, const WeldedMesh& mesh, Rounds& all) {
+  if (found.round.turn < kLeastTurn) return;
   std::vector<PrimitiveId> ids;
-  for (const std::uint32_t t : triangles) ids.push_back(mesh.ids[t]);
+  for (const std::uint32_t t : found.triangles) ids.push_back(mesh.ids[t]);
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  Round& round = all.rounds.emplace_back(found.round);
   round.first = std::uint32_t(all.triangles.size());
   round.count = std::uint32_t(ids.size());
   all.triangles.insert(all.triangles.end(), ids.begin(), ids.end());
-  all.rounds.push_back(round);
 }
 
 }  // namespace
@@ -277,20 +239,19 @@ Rounds find_rounds(const Surfaces& surfaces, const Execution& execution) {
   Rounds all;
   const std::vector<FoundCircle> circles = find_circles(mesh, execution);
   for (const FoundCircle& found : circles) {
-    const double turn = covered(found);
-    if (turn < kLeastTurn) continue;
     const Circle3& circle = found.circle;
-    append({RoundKind::circle, circle.centre, circle.centre, circle.axis, circle.radius, turn}, found.triangles,
+    append({{RoundKind::circle, circle.centre, circle.centre, circle.axis, circle.radius, covered(found)},
+            found.triangles},
            mesh.mesh, all);
   }
-  for (const FoundWall& wall : find_walls(mesh, circles, execution)) {
-    if (wall.turn < kLeastTurn) continue;
-    append({RoundKind::cylinder, wall.from, wall.to, wall.axis, wall.radius, wall.turn, wall.is_hollow}, wall.triangles,
-           mesh.mesh, all);
+  for (const FoundRound& wall : find_walls(mesh, circles, execution)) append(wall, mesh.mesh, all);
+  std::vector<bool> is_taken(mesh.mesh.triangles.size());
+  RevolvedFinder finder{mesh};
+  for (std::uint32_t t = 0; t < is_taken.size(); ++t) {
+    if (t % 4096 == 0) check_cancelled(execution);
+    if (is_taken[t]) continue;
+    if (const auto revolved = finder.find(region_from(t, mesh, is_taken))) append(*revolved, mesh.mesh, all);
   }
-  for (const FoundRevolved& found : find_revolved(mesh, execution))
-    append({RoundKind::revolved, found.from, found.to, found.axis, found.radius, 2 * std::numbers::pi}, found.triangles,
-           mesh.mesh, all);
   all.prisms = find_prisms(mesh, execution);
   return all;
 }

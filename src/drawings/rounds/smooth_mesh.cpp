@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two triangles are neighbours if no other triangle has their common edge, and they run along this edge in opposite
-// directions. Every other edge, such as an edge of copies or of three triangles, is a border, across which no smooth
-// surface continues.
+// Triangles are neighbours where exactly two share an edge and run along it in opposite directions. Every other edge,
+// as of copies or of three triangles, is a border: nothing smooth goes on across it.
 //
-//       |                  Where several sharp edges meet at a vertex (o), pairs of them continue each other; the
-//    ---o---               straightest pair is joined first. Open chains are followed from their ends first. The
-//                          remaining chains are closed.
+//       |        Where several sharp edges meet at a vertex (o), pairs of them continue each other, the straightest
+//       pair
+//    ---o---     first. Chains are followed from their open ends first; the others are closed.
 #include <algorithm>
-#include <cmath>
-#include <span>
-#include <vector>
+#include <tuple>
 
 #include "base/parallel.h"
 #include "lines/lists.h"
+#include "lines/strokes/parts.h"
 #include "rounds/found_rounds.h"
 
 namespace frontmost::lines_detail {
@@ -21,49 +19,8 @@ namespace {
 constexpr std::size_t kTrianglesPerPart = 4096;
 constexpr double kSixDigits = 2e-6;  // share of the largest coordinate
 
-Buffer<glm::dvec3> normals_of(const WeldedMesh& mesh, const Execution& execution) {
-  Buffer<glm::dvec3> normals(mesh.triangles.size());
-  parallel_for(execution, normals.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const glm::dvec3 normal = normal_of(mesh, std::uint32_t(i));
-      const double length = glm::length(normal);
-      normals[i] = length > 0 && std::isfinite(length) ? normal / length : glm::dvec3(0);
-    }
-  });
-  return normals;
-}
-
-/// Removes the fillers of T-junctions, which have no area and would split smooth surfaces.
-void close_all_seams(WeldedMesh& mesh, const Execution& execution) {
-  Buffer<std::int8_t> may_be_flat(mesh.triangles.size());
-  for (std::size_t i = 0; i < may_be_flat.size(); ++i) {
-    const glm::uvec3& t = mesh.triangles[i];
-    const glm::dvec3 at = mesh.positions[t.x], p = mesh.positions[t.y] - at, q = mesh.positions[t.z] - at;
-    const glm::dvec3 normal = glm::cross(p, q);
-    may_be_flat[i] = glm::dot(normal, normal) > 1e-20 * glm::dot(p, p) * glm::dot(q, q);
-  }
-  static_cast<void>(close_seams(mesh, may_be_flat, execution));
-}
-
-constexpr std::size_t kSharpPerPart = 4096;
 /// If more edges meet at a vertex, they belong to no circle, and pairing them would take the square of their number.
 constexpr std::size_t kMostAtVertex = 16;
-
-std::vector<SharpEdge> sharp_edges(const SmoothMesh& mesh, const Execution& execution) {
-  const std::size_t triangles = mesh.mesh.triangles.size();
-  std::vector<std::vector<SharpEdge>> lists((triangles + kSharpPerPart - 1) / kSharpPerPart);
-  parallel_for(execution, triangles, kSharpPerPart, [&](std::size_t begin, std::size_t end) {
-    std::vector<SharpEdge>& list = lists[begin / kSharpPerPart];
-    for (auto t = std::uint32_t(begin); t < end; ++t)
-      for (int k = 0; k < 3; ++k) {
-        const std::uint32_t other = mesh.across(t, k);
-        if ((other != no_index && other < t) || mesh.is_smooth(t, k)) continue;
-        const glm::uvec3& corners = mesh.mesh.triangles[t];
-        list.push_back({corners[k], corners[(k + 1) % 3], t, other});
-      }
-  });
-  return joined(lists, execution);
-}
 
 /// An end of an edge: edge i has the ends 2 i and 2 i + 1.
 using ChainEnd = std::uint32_t;
@@ -78,18 +35,28 @@ class Chainer {
         least_cosine_(least_cosine) {}
 
   void run(const Execution& execution) {
-    join_all(execution);
-    std::vector<bool> is_done(edges_.size());
-    // Open chains are followed first, from their ends; the remaining chains are closed.
-    for (const bool closed : {false, true})
-      for (std::uint32_t edge = 0; edge < edges_.size(); ++edge) {
-        if (edge % 65536 == 0) check_cancelled(execution);
-        if (is_done[edge]) continue;
-        if (closed || next_[2 * edge] == no_index)
-          follow(2 * edge + 1, closed, is_done);
-        else if (next_[2 * edge + 1] == no_index)
-          follow(2 * edge, closed, is_done);
+    std::vector<std::pair<std::uint32_t, ChainEnd>> all(2 * edges_.size());
+    for (ChainEnd end = 0; end < all.size(); ++end) all[end] = {vertex(end), end};
+    std::sort(all.begin(), all.end());
+    std::size_t steps = 0;
+    for (auto begin = all.begin(); begin != all.end();) {
+      if (++steps % 65536 == 0) check_cancelled(execution);
+      const auto end = std::find_if(begin, all.end(), [&](const auto& e) { return e.first != begin->first; });
+      const auto count = std::size_t(end - begin);
+      if (count <= kMostAtVertex) join({&*begin, count});
+      begin = end;
+    }
+    for_each_chain(next_, [&](const std::vector<ChainEnd>& ends, bool is_closed) {
+      if (++steps % 65536 == 0) check_cancelled(execution);
+      if (ends.size() < kFewestSides) return;
+      SharpChain& chain = chains_.emplace_back();
+      chain.is_closed = is_closed;
+      for (const ChainEnd end : ends) {
+        chain.vertices.push_back(vertex(end));
+        chain.edges.push_back(end / 2);
       }
+      if (!is_closed) chain.vertices.push_back(vertex(ends.back() ^ 1));
+    });
   }
 
  private:
@@ -99,64 +66,25 @@ class Chainer {
 
   /// The unit direction of the edge, away from this end.
   [[nodiscard]] glm::dvec3 direction(ChainEnd end) const {
-    const glm::dvec3 along = mesh_.mesh.positions[vertex(end ^ 1)] - mesh_.mesh.positions[vertex(end)];
-    const double length = glm::length(along);
-    return length > 0 ? along / length : glm::dvec3(0);
-  }
-
-  void join_all(const Execution& execution) {
-    std::vector<std::pair<std::uint32_t, ChainEnd>> ends(2 * edges_.size());
-    for (ChainEnd end = 0; end < ends.size(); ++end) ends[end] = {vertex(end), end};
-    std::sort(ends.begin(), ends.end());
-    std::size_t steps = 0;
-    for (auto begin = ends.begin(); begin != ends.end();) {
-      if (++steps % 65536 == 0) check_cancelled(execution);
-      const auto end = std::find_if(begin, ends.end(), [&](const auto& e) { return e.first != begin->first; });
-      const auto count = std::size_t(end - begin);
-      if (count <= kMostAtVertex) join({&*begin, count});
-      begin = end;
-    }
+    return unit_of(mesh_.mesh.positions[vertex(end ^ 1)] - mesh_.mesh.positions[vertex(end)]);
   }
 
   /// Joins the straightest pairs first.
   void join(std::span<const std::pair<std::uint32_t, ChainEnd>> ends) {
-    struct Pair {
-      double cosine;
-      ChainEnd a, b;
-    };
-    std::vector<Pair> pairs;
+    std::vector<std::tuple<double, ChainEnd, ChainEnd>> pairs;  // with the negative cosine
     for (std::size_t i = 0; i < ends.size(); ++i)
       for (std::size_t k = 0; k < i; ++k) {
         // Copies of an edge, from duplicate surfaces, do not continue each other.
         if (vertex(ends[i].second ^ 1) == vertex(ends[k].second ^ 1)) continue;
         const double cosine = -glm::dot(direction(ends[i].second), direction(ends[k].second));
-        if (cosine >= least_cosine_) pairs.push_back({cosine, ends[k].second, ends[i].second});
+        if (cosine >= least_cosine_) pairs.emplace_back(-cosine, ends[k].second, ends[i].second);
       }
-    std::sort(pairs.begin(), pairs.end(), [](const Pair& p, const Pair& q) {
-      return p.cosine != q.cosine ? p.cosine > q.cosine : p.a != q.a ? p.a < q.a : p.b < q.b;
-    });
-    for (const Pair& pair : pairs) {
-      if (next_[pair.a] != no_index || next_[pair.b] != no_index) continue;
-      next_[pair.a] = pair.b;
-      next_[pair.b] = pair.a;
+    std::sort(pairs.begin(), pairs.end());
+    for (const auto& [turn, a, b] : pairs) {
+      if (next_[a] != no_index || next_[b] != no_index) continue;
+      next_[a] = b;
+      next_[b] = a;
     }
-  }
-
-  /// Follows a chain from the edge whose far end is `ahead`.
-  void follow(ChainEnd ahead, bool closed, std::vector<bool>& is_done) {
-    SharpChain chain;
-    chain.is_closed = closed;
-    while (!is_done[ahead / 2]) {
-      is_done[ahead / 2] = true;
-      chain.vertices.push_back(vertex(ahead ^ 1));
-      chain.edges.push_back(ahead / 2);
-      if (next_[ahead] == no_index) {
-        chain.vertices.push_back(vertex(ahead));
-        break;
-      }
-      ahead = next_[ahead] ^ 1;
-    }
-    if (chain.edges.size() >= kFewestSides) chains_.push_back(std::move(chain));
   }
 
   const SmoothMesh& mesh_;
@@ -177,58 +105,23 @@ Across::Across(const glm::dvec3& axis) {
   v = glm::cross(axis, u);
 }
 
-std::optional<Tube> tube_through(std::span<const glm::dvec3> points, const glm::dvec3& axis) {
-  const Across across(axis);
-  glm::dvec3 middle(0);
-  for (const glm::dvec3& p : points) middle += p;
-  middle /= double(points.size());
-  // Solves x^2 + y^2 = 2 a x + 2 b y + c. Coordinates are relative to the middle, so the sums of x and y are 0.
-  double xx = 0, xy = 0, yy = 0, xs = 0, ys = 0, squares = 0;
-  for (const glm::dvec3& p : points) {
-    const double x = glm::dot(p - middle, across.u), y = glm::dot(p - middle, across.v), s = x * x + y * y;
-    xx += x * x;
-    xy += x * y;
-    yy += y * y;
-    xs += x * s;
-    ys += y * s;
-    squares += s;
-  }
-  const double determinant = 2 * (xx * yy - xy * xy);
-  if (!(determinant > 1e-14 * squares * squares)) return std::nullopt;
-  const double a = (xs * yy - ys * xy) / determinant, b = (ys * xx - xs * xy) / determinant;
-  const double radius = std::sqrt(squares / double(points.size()) + a * a + b * b);
-  if (!std::isfinite(radius)) return std::nullopt;
-  return Tube{middle + a * across.u + b * across.v, axis, radius};
-}
-
-glm::dvec3 common_perpendicular(std::span<const glm::dvec3> vectors) {
-  glm::dmat3 sum(0);
-  for (const glm::dvec3& n : vectors) sum += glm::outerProduct(n, n);
-  // The adjugate's powers converge to the eigenvector of the least eigenvalue; taking the longest column is one more
-  // step.
-  const auto adjugate = [](const glm::dmat3& m) {
-    return glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-  };
-  glm::dmat3 power = adjugate(sum);
-  for (int i = 0; i < 4; ++i) {
-    const double trace = power[0][0] + power[1][1] + power[2][2];
-    if (!(trace > 0)) return glm::dvec3(0, 0, 1);
-    power /= trace;
-    power = power * power;
-  }
-  glm::dvec3 longest = power[0];
-  for (const int i : {1, 2})
-    if (glm::dot(power[i], power[i]) > glm::dot(longest, longest)) longest = power[i];
-  const double length = glm::length(longest);
-  return length > 0 ? longest / length : glm::dvec3(0, 0, 1);
-}
-
 SmoothMesh smooth_mesh(const Surfaces& surfaces, const Execution& execution) {
   SmoothMesh result;
   result.mesh = weld(surfaces, execution);
-  close_all_seams(result.mesh, execution);
   const WeldedMesh& mesh = result.mesh;
-  result.normals = normals_of(mesh, execution);
+  // Removes the fillers of T-junctions, which have no area and would split smooth surfaces.
+  Buffer<std::int8_t> may_be_flat(mesh.triangles.size());
+  for (std::size_t i = 0; i < may_be_flat.size(); ++i) {
+    const glm::uvec3& t = mesh.triangles[i];
+    const glm::dvec3 at = mesh.positions[t.x], p = mesh.positions[t.y] - at, q = mesh.positions[t.z] - at;
+    const glm::dvec3 normal = glm::cross(p, q);
+    may_be_flat[i] = glm::dot(normal, normal) > 1e-20 * glm::dot(p, p) * glm::dot(q, q);
+  }
+  static_cast<void>(close_seams(result.mesh, may_be_flat, execution));
+  result.normals = Buffer<glm::dvec3>(mesh.triangles.size());
+  parallel_for(execution, mesh.triangles.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) result.normals[i] = unit_of(normal_of(mesh, std::uint32_t(i)));
+  });
   result.neighbours = EdgeNeighbours({mesh.triangles.data(), mesh.triangles.size()}, mesh.positions.size(), execution);
   const Box& box = surfaces.bounds();
   const glm::dvec3 reach = glm::max(glm::abs(glm::dvec3(box.low)), glm::abs(glm::dvec3(box.high)));
@@ -237,8 +130,18 @@ SmoothMesh smooth_mesh(const Surfaces& surfaces, const Execution& execution) {
 }
 
 SharpChains sharp_chains(const SmoothMesh& mesh, const Execution& execution, double least_cosine) {
-  SharpChains all;
-  all.edges = sharp_edges(mesh, execution);
+  const std::size_t triangles = mesh.mesh.triangles.size();
+  std::vector<std::vector<SharpEdge>> lists((triangles + kTrianglesPerPart - 1) / kTrianglesPerPart);
+  parallel_for(execution, triangles, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
+    for (auto t = std::uint32_t(begin); t < end; ++t)
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t other = mesh.across(t, k);
+        if ((other != no_index && other < t) || mesh.is_smooth(t, k)) continue;
+        const glm::uvec3& corners = mesh.mesh.triangles[t];
+        lists[begin / kTrianglesPerPart].push_back({corners[k], corners[(k + 1) % 3], t, other});
+      }
+  });
+  SharpChains all{joined(lists, execution), {}};
   if (all.edges.size() >= std::size_t(1) << 31)
     throw Error(ErrorCode::limit_exceeded, "rounds", "more than 2147483647 sharp edges");
   Chainer(mesh, all, least_cosine).run(execution);

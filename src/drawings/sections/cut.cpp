@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each object is cut separately, and closed with a face where the plane passes through it:
 //
-//        before            behind the plane      A triangle with one vertex behind the plane leaves one triangle,
-//      /\      .           /|                    and a triangle with two leaves two. The side along the plane is
-//     /  \     .  plane   / |  cut face          kept as a segment, with the removed part on its left. Segments
-//    /____\    .         /__|                    of one object form outlines, which bound its cut face.
+//        before            behind the plane        A triangle with one vertex behind leaves a triangle, one with two
+//      /\      .           /|                      leaves two. The side along the plane is kept as a segment, with the
+//     /  \     .  plane   / |  cut face            removed part on its left. The segments of an object form outlines,
+//    /____\    .         /__|                      and the outlines bound the regions of the cut face.
 //
-// The intersection of an edge with the plane is computed from the edge's lesser end. So both triangles at the edge get
-// the same place to the bit, and outlines close without a tolerance.
+// The intersection of an edge with the plane is computed from the edge's lesser end, so outlines close to the bit.
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 
 #include "base/parallel.h"
-#include "frontmost/lines.h"
 #include "sections/regions.h"
 #include "surfaces/cluster_set.h"
 
@@ -24,54 +22,45 @@ using namespace lines_detail;
 
 constexpr std::size_t triangles_per_poll = 1 << 14;
 
-/// The intersection of an edge with the plane, computed from the same end for both triangles.
 glm::vec3 meeting(const PlaneAxes& plane, glm::vec3 p, glm::vec3 q) {
   if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(p, q);
-  const int across = plane.across();
+  const int across = plane.across;
   const glm::dvec3 from(p), to(q);
-  const double t = (plane.at() - from[across]) / (to[across] - from[across]);
+  const double t = (plane.at - from[across]) / (to[across] - from[across]);
   glm::vec3 place(t <= 0.5 ? from + (to - from) * t : to + (from - to) * (1 - t));
-  place[across] = plane.at();
+  place[across] = plane.at;
   return place + 0.0f;  // -0 is 0
 }
 
 /// Cuts one object: `left` is the remaining part, `segments` are the segments of the cut.
-class ObjectCutter {
- public:
-  ObjectCutter(const PlaneAxes& plane, const Mesh& mesh, bool is_mirrored)
-      : plane_(plane), mesh_(mesh), is_mirrored_(is_mirrored) {}
-
+struct ObjectCutter {
   void run(const ToWorld& to_world, const Execution& execution) {
-    left.name = mesh_.name;
-    left.positions.reserve(mesh_.positions.size());
-    for (const glm::vec3& p : mesh_.positions) left.positions.push_back(to_world(p) + 0.0f);
-    for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+    left.name = mesh.name;
+    left.positions.reserve(mesh.positions.size());
+    for (const glm::vec3& p : mesh.positions) left.positions.push_back(to_world(p) + 0.0f);
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       if (t % triangles_per_poll == 0) check_cancelled(execution);
       add(t);
     }
   }
 
-  Mesh left;
-  std::vector<CutSegment> segments;
-
- private:
   void add(std::uint32_t number) {
-    glm::uvec3 corners = mesh_.triangles[number];
-    if (is_mirrored_) std::swap(corners.y, corners.z);
+    glm::uvec3 corners = mesh.triangles[number];
+    if (is_mirrored) std::swap(corners.y, corners.z);
     int behind = 0, odd = 0;  // odd: the corner that is alone on its side
     bool is_behind[3];
     for (int k = 0; k < 3; ++k) {
       if (!is_finite(left.positions[corners[k]])) return;
-      is_behind[k] = plane_.is_behind(left.positions[corners[k]]);
+      is_behind[k] = plane.is_behind(left.positions[corners[k]]);
       behind += is_behind[k];
     }
     if (behind == 0) return;
-    const std::uint32_t material = mesh_.material_of(number);
+    const std::uint32_t material = mesh.material_of(number);
     if (behind == 3) return add(corners, material);
     while (is_behind[odd] != (behind == 1)) ++odd;
     const std::uint32_t a = corners[odd], b = corners[odd == 2 ? 0 : odd + 1], c = corners[odd == 0 ? 2 : odd - 1];
-    const glm::vec3 on_b = meeting(plane_, left.positions[a], left.positions[b]);
-    const glm::vec3 on_c = meeting(plane_, left.positions[a], left.positions[c]);
+    const glm::vec3 on_b = meeting(plane, left.positions[a], left.positions[b]);
+    const glm::vec3 on_c = meeting(plane, left.positions[a], left.positions[c]);
     const auto first = std::uint32_t(left.positions.size());
     left.positions.push_back(on_b);
     left.positions.push_back(on_c);
@@ -91,12 +80,14 @@ class ObjectCutter {
   }
 
   void add_segment(const glm::vec3& from, const glm::vec3& to) {
-    if (from != to) segments.push_back({plane_.in_plane(from), plane_.in_plane(to)});
+    if (from != to) segments.push_back({plane.in_plane(from), plane.in_plane(to)});
   }
 
-  const PlaneAxes& plane_;
-  const Mesh& mesh_;
-  const bool is_mirrored_;
+  const PlaneAxes& plane;
+  const Mesh& mesh;
+  const bool is_mirrored;
+  Mesh left{};
+  std::vector<CutSegment> segments{};
 };
 
 /// Fills the cut of an object with triangles of the face's material.
@@ -125,38 +116,9 @@ CutFace close(const std::vector<CutSegment>& segments, const PlaneAxes& plane, s
   return face;
 }
 
-/// The scene without objects. Materials lose their textures, because the cut face has no coordinates for them.
-Scene without_objects(const Scene& from) {
-  Scene scene;
-  scene.name = from.name;
-  scene.up = from.up;
-  scene.origin = from.origin;
-  scene.cameras = from.cameras;
-  for (Material material : from.materials) {
-    for (TextureUse* const use : texture_uses_of(material)) *use = {};
-    scene.materials.push_back(std::move(material));
-  }
-  return scene;
-}
-
-/// The material of the object's first triangle, renamed to the object's name.
-Material material_of_face(const Scene& scene, const Instance& instance, const Mesh& mesh) {
-  Material material;
-  if (const std::uint32_t own = mesh.material_of(0); own != no_index) material = scene.materials[own];
-  material.name = instance.name;
-  return material;
-}
-
 constexpr int style_count = 6;
 constexpr std::size_t most_compared = 2048;
 constexpr double spacings[] = {1, 0.7, 1.4};  // factors of the spacing, each used at two angles
-
-Box box_of(const CutFace& face) {
-  Box box;
-  for (const std::vector<glm::vec3>& outline : face.outlines)
-    for (const glm::vec3& p : outline) box.include(p);
-  return box;
-}
 
 bool may_touch(const Box& a, const Box& b) {
   return glm::all(glm::lessThanEqual(a.low, b.high)) && glm::all(glm::lessThanEqual(b.low, a.high));
@@ -178,15 +140,6 @@ struct PlacedFace {
   Box box;
 };
 
-std::vector<PlacedFace> faces_of(std::span<const Section* const> sections) {
-  std::vector<PlacedFace> faces;
-  for (std::size_t i = 0; i < sections.size(); ++i)
-    for (const CutFace& face : sections[i]->faces) faces.push_back({face.instance, i, box_of(face)});
-  std::stable_sort(faces.begin(), faces.end(),
-                   [](const PlacedFace& a, const PlacedFace& b) { return a.instance < b.instance; });
-  return faces;
-}
-
 }  // namespace
 
 Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution& execution) {
@@ -195,20 +148,31 @@ Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution
   const IeeeScope ieee;
   const Scene& whole = surfaces.scene();
   const PlaneAxes axes(plane);
-  Section section{without_objects(whole), {}};
+  Section section;
+  Scene& scene = section.scene;
+  scene.name = whole.name;
+  scene.up = whole.up;
+  scene.origin = whole.origin;
+  scene.cameras = whole.cameras;
+  scene.materials = whole.materials;
+  for (Material& material : scene.materials)  // the face has no coordinates of textures
+    for (TextureUse* const use : texture_uses_of(material)) *use = {};
   for (std::uint32_t i = 0; i < whole.instances.size(); ++i) {
     const Instance& instance = whole.instances[i];
     const Mesh& mesh = whole.meshes[instance.mesh];
-    ObjectCutter cutter(axes, mesh, surfaces.is_mirrored(i));
+    ObjectCutter cutter{axes, mesh, surfaces.is_mirrored(i)};
     cutter.run(ToWorld(instance.world_from_mesh), execution);
     if (!cutter.segments.empty()) {
-      section.faces.push_back(
-          close(cutter.segments, axes, std::uint32_t(section.scene.materials.size()), cutter.left, execution));
+      std::vector<Material>& materials = scene.materials;
+      section.faces.push_back(close(cutter.segments, axes, std::uint32_t(materials.size()), cutter.left, execution));
       section.faces.back().instance = i;
-      section.scene.materials.push_back(material_of_face(section.scene, instance, mesh));
+      // The material of the object's first triangle, renamed to the object's name.
+      const std::uint32_t own = mesh.material_of(0);
+      materials.push_back(own != no_index ? Material(materials[own]) : Material());
+      materials.back().name = instance.name;
     }
-    section.scene.instances.push_back({instance.name, i, glm::dmat4(1)});
-    section.scene.meshes.push_back(std::move(cutter.left));
+    scene.instances.push_back({instance.name, i, glm::dmat4(1)});
+    scene.meshes.push_back(std::move(cutter.left));
     report_progress(execution, "cut", double(i + 1) / double(whole.instances.size()));
   }
   return section;
@@ -217,7 +181,15 @@ Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution
 std::vector<std::uint8_t> hatch_styles(std::span<const Section* const> sections) {
   std::vector<std::uint8_t> styles;
   for (const Section* const section : sections) styles.resize(std::max(styles.size(), section->scene.instances.size()));
-  const std::vector<PlacedFace> faces = faces_of(sections);
+  std::vector<PlacedFace> faces;
+  for (std::size_t i = 0; i < sections.size(); ++i)
+    for (const CutFace& face : sections[i]->faces) {
+      faces.push_back({face.instance, i, {}});
+      for (const std::vector<glm::vec3>& outline : face.outlines)
+        for (const glm::vec3& p : outline) faces.back().box.include(p);
+    }
+  std::stable_sort(faces.begin(), faces.end(),
+                   [](const PlacedFace& a, const PlacedFace& b) { return a.instance < b.instance; });
   for (std::size_t begin = 0, end = 0; begin < faces.size(); begin = end) {
     const std::uint32_t instance = faces[begin].instance;
     std::size_t uses[style_count] = {};
@@ -247,12 +219,8 @@ std::vector<HatchSet> section_hatch_sets(const Section& section, std::span<const
 }
 
 ToneOptions section_tone(const CuttingPlane& plane) {
-  ToneOptions tone;
-  tone.to_light =
-      plane.towards == Axis::x || plane.towards == Axis::minus_x ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
-  tone.casts_shadows = false;
-  tone.crease_angle = 0;
-  return tone;
+  const bool is_across_x = plane.towards == Axis::x || plane.towards == Axis::minus_x;
+  return {is_across_x ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0), false, 0};
 }
 
 }  // namespace frontmost

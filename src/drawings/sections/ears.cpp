@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each hole is joined to the outer line by a bridge, a side that runs there and back. Then ears are cut off until three
-// corners are left; an ear is a corner whose neighbours see each other (G. Meisters. Polygons Have Ears. 1975).
+// Holes are joined to the outer line by a bridge, a side that is there twice. Then ears are cut off until three corners
+// are left; an ear is a corner whose neighbours see each other (G. Meisters. Polygons Have Ears. 1975).
 //
 //     +-----------------+                   +-----------------+         an ear at b: a, b, c turn left, and no other
 //     |      +---+      |        ->         |------+---+      |         corner lies in the triangle that they make
 //     |      +---+      |                   |      +---+      |
 //     +-----------------+                   +-----------------+
 //
-// All turns are exact signs, so no ear overlaps another. Only reflex corners may lie in an ear; they are found in a
-// grid. If outlines cross, there may be no ear. Then a flat corner is cut; if there is none, any corner that turns
-// left; if there is none either, any corner.
+// All turns are exact signs, so no ear overlaps another. Where outlines cross there may be no ear: then flat corners
+// are cut, then any corner that turns left, then any corner.
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <queue>
 
 #include "base/orientation.h"
 #include "base/parallel.h"
@@ -24,137 +25,129 @@ constexpr std::size_t corners_per_poll = 1 << 10;
 constexpr int most_cells = 1 << 10;  // along an axis
 
 /// Corners in rings. The first ring is the outer line, to which the holes are joined.
-class Rings {
- public:
+struct Rings {
   explicit Rings(const Region& region) {
     add(region.outer);
     for (const SectionOutline& hole : region.holes) add(hole);
   }
 
-  [[nodiscard]] std::size_t size() const { return links_.size(); }
-  [[nodiscard]] const glm::vec2& at(std::uint32_t i) const { return places_[i]; }
-  [[nodiscard]] std::uint32_t next(std::uint32_t i) const { return links_[i].next; }
-  [[nodiscard]] std::uint32_t last(std::uint32_t i) const { return links_[i].last; }
-  [[nodiscard]] const std::vector<std::uint32_t>& firsts() const { return firsts_; }
+  [[nodiscard]] std::size_t size() const { return links.size(); }
+  [[nodiscard]] const glm::vec2& at(std::uint32_t i) const { return places[i]; }
+  [[nodiscard]] std::uint32_t next(std::uint32_t i) const { return links[i].next; }
+  [[nodiscard]] std::uint32_t last(std::uint32_t i) const { return links[i].last; }
+
+  /// Appends the corners of the ring of `first`.
+  void append_ring(std::uint32_t first, std::vector<std::uint32_t>& corners) const {
+    std::uint32_t i = first;
+    do corners.push_back(i);
+    while ((i = next(i)) != first);
+  }
 
   void remove(std::uint32_t i) {
-    links_[links_[i].last].next = links_[i].next;
-    links_[links_[i].next].last = links_[i].last;
+    links[links[i].last].next = links[i].next;
+    links[links[i].next].last = links[i].last;
   }
 
   /// Joins the rings of two corners that lie at one place, where a bridge would have no length.
   void splice(std::uint32_t a, std::uint32_t b) {
-    std::swap(links_[a].next, links_[b].next);
-    links_[links_[a].next].last = a;
-    links_[links_[b].next].last = b;
+    std::swap(links[a].next, links[b].next);
+    links[links[a].next].last = a;
+    links[links[b].next].last = b;
   }
 
   /// Adds a side from corner a to b and back. Both corners are duplicated, with the copies at the end of the list.
   void bridge(std::uint32_t a, std::uint32_t b) {
     const auto a2 = std::uint32_t(size()), b2 = a2 + 1;
-    places_.push_back(places_[a]);
-    places_.push_back(places_[b]);
-    links_.push_back({b2, links_[a].next});
-    links_.push_back({links_[b].last, a2});
-    links_[links_[a2].next].last = a2;
-    links_[links_[b2].last].next = b2;
-    links_[a].next = b;
-    links_[b].last = a;
+    places.push_back(places[a]);
+    places.push_back(places[b]);
+    links.push_back({b2, links[a].next});
+    links.push_back({links[b].last, a2});
+    links[links[a2].next].last = a2;
+    links[links[b2].last].next = b2;
+    links[a].next = b;
+    links[b].last = a;
   }
 
   /// Whether a side from corner i to the point `to` leads into the polygon at i, and not along one of its sides.
   [[nodiscard]] bool runs_inside(std::uint32_t i, const glm::vec2& to) const {
     const glm::vec2 &before = at(last(i)), &here = at(i), &behind = at(next(i));
     const bool left_of_next = orientation(here, behind, to) > 0, right_of_last = orientation(here, before, to) < 0;
-    return orientation(before, here, behind) > 0 ? left_of_next && right_of_last : left_of_next || right_of_last;
+    return turn(i) > 0 ? left_of_next && right_of_last : left_of_next || right_of_last;
   }
+  /// The orientation of the corner with its neighbours.
+  [[nodiscard]] int turn(std::uint32_t i) const { return orientation(at(last(i)), at(i), at(next(i))); }
 
- private:
   void add(const SectionOutline& outline) {
     const auto first = std::uint32_t(size()), count = std::uint32_t(outline.size());
-    firsts_.push_back(first);
+    firsts.push_back(first);
     for (std::uint32_t i = 0; i < count; ++i) {
-      places_.push_back(outline[i]);
-      links_.push_back({first + (i + count - 1) % count, first + (i + 1) % count});
+      places.push_back(outline[i]);
+      links.push_back({first + (i + count - 1) % count, first + (i + 1) % count});
     }
   }
 
-  std::vector<glm::vec2> places_;
   struct Link {
     std::uint32_t last, next;
   };
-  std::vector<Link> links_;  ///< the neighbours of each remaining corner
-  std::vector<std::uint32_t> firsts_;
+
+  std::vector<glm::vec2> places;
+  std::vector<Link> links;  ///< the neighbours of each remaining corner
+  std::vector<std::uint32_t> firsts;
 };
 
 /// Joins all holes to the outer line.
-class Joiner {
- public:
-  Joiner(Rings& rings, const Execution& execution) : rings_(rings), execution_(execution), count_(rings.size()) {}
-
+struct Joiner {
   void run() {
     std::vector<std::uint32_t> leftmost;
-    for (std::size_t k = 1; k < rings_.firsts().size(); ++k) leftmost.push_back(leftmost_of(rings_.firsts()[k]));
+    for (std::size_t k = 1; k < rings.firsts.size(); ++k) leftmost.push_back(leftmost_of(rings.firsts[k]));
     // Holes are joined from left to right, so that each hole sees a part of the outer line or of a joined hole.
     std::sort(leftmost.begin(), leftmost.end(),
-              [&](std::uint32_t a, std::uint32_t b) { return is_left_of(rings_.at(a), rings_.at(b)); });
-    add_joined(rings_.firsts()[0]);
+              [&](std::uint32_t a, std::uint32_t b) { return is_left_of(rings.at(a), rings.at(b)); });
+    rings.append_ring(rings.firsts[0], joined);
     for (const std::uint32_t corner : leftmost) {
-      check_cancelled(execution_);
+      check_cancelled(execution);
       const std::uint32_t other = nearest_in_sight(corner);
-      add_joined(corner);
+      rings.append_ring(corner, joined);
       if (other == no_index) continue;  // the outlines cross; the hole is filled as if it were not there
-      if (rings_.at(other) == rings_.at(corner)) {
-        rings_.splice(other, corner);
+      if (rings.at(other) == rings.at(corner)) {
+        rings.splice(other, corner);
         continue;
       }
-      joined_.push_back(std::uint32_t(rings_.size()));
-      joined_.push_back(std::uint32_t(rings_.size()) + 1);
-      rings_.bridge(other, corner);
+      for (const std::size_t copy : {rings.size(), rings.size() + 1}) joined.push_back(std::uint32_t(copy));
+      rings.bridge(other, corner);
     }
   }
 
- private:
   [[nodiscard]] std::uint32_t leftmost_of(std::uint32_t first) const {
     std::uint32_t best = first;
-    for (std::uint32_t i = rings_.next(first); i != first; i = rings_.next(i))
-      if (is_left_of(rings_.at(i), rings_.at(best))) best = i;
+    for (std::uint32_t i = rings.next(first); i != first; i = rings.next(i))
+      if (is_left_of(rings.at(i), rings.at(best))) best = i;
     return best;
   }
 
-  void add_joined(std::uint32_t first) {
-    std::uint32_t i = first;
-    do joined_.push_back(i);
-    while ((i = rings_.next(i)) != first);
-  }
-
   [[nodiscard]] std::uint32_t nearest_in_sight(std::uint32_t corner) {
-    const glm::vec2 from = rings_.at(corner);
+    const glm::vec2 from = rings.at(corner);
     const auto distance = [&](std::uint32_t i) {
-      const glm::dvec2 off = glm::dvec2(rings_.at(i)) - glm::dvec2(from);
+      const glm::dvec2 off = glm::dvec2(rings.at(i)) - glm::dvec2(from);
       return glm::dot(off, off);
     };
-    std::vector<std::pair<double, std::uint32_t>> near;
-    for (const std::uint32_t i : joined_)
-      if (!is_left_of(from, rings_.at(i))) near.emplace_back(distance(i), i);
+    using Near = std::pair<double, std::uint32_t>;
+    std::vector<Near> near;
+    for (const std::uint32_t i : joined)
+      if (!is_left_of(from, rings.at(i))) near.emplace_back(distance(i), i);
     // The nearest corner is nearly always in sight.
-    const auto is_farther = [](const auto& a, const auto& b) { return a > b; };
-    std::make_heap(near.begin(), near.end(), is_farther);
-    while (!near.empty()) {
-      std::pop_heap(near.begin(), near.end(), is_farther);
-      const std::uint32_t other = near.back().second;
-      near.pop_back();
-      if (sees(corner, other)) return other;
-    }
+    std::priority_queue<Near, std::vector<Near>, std::greater<>> nearest(std::greater<>(), std::move(near));
+    for (; !nearest.empty(); nearest.pop())
+      if (sees(corner, nearest.top().second)) return nearest.top().second;
     return no_index;
   }
 
   [[nodiscard]] bool sees(std::uint32_t corner, std::uint32_t other) const {
-    const glm::vec2 &a = rings_.at(corner), &b = rings_.at(other);
-    if (!rings_.runs_inside(other, a != b ? a : rings_.at(rings_.next(corner)))) return false;
+    const glm::vec2 &a = rings.at(corner), &b = rings.at(other);
+    if (!rings.runs_inside(other, a != b ? a : rings.at(rings.next(corner)))) return false;
     // The line of sight must not cross a side of an outline or of a bridge.
-    for (std::uint32_t i = 0; i < rings_.size(); ++i) {
-      const glm::vec2 &p = rings_.at(i), &q = rings_.at(rings_.next(i));
+    for (std::uint32_t i = 0; i < rings.size(); ++i) {
+      const glm::vec2 &p = rings.at(i), &q = rings.at(rings.next(i));
       if (p == a || q == a || p == b || q == b) continue;
       const int p_side = orientation(a, b, p), q_side = orientation(a, b, q);
       if (p_side * q_side > 0) continue;
@@ -173,17 +166,17 @@ class Joiner {
   }
 
   [[nodiscard]] bool has_place_between(const glm::vec2& a, const glm::vec2& b) const {
-    for (std::uint32_t i = 0; i < count_; ++i) {
-      const glm::vec2& p = rings_.at(i);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const glm::vec2& p = rings.at(i);
       if (p != a && p != b && orientation(a, b, p) == 0 && is_left_of(a, p) != is_left_of(b, p)) return true;
     }
     return false;
   }
 
-  Rings& rings_;
-  const Execution& execution_;
-  const std::size_t count_;  ///< number of corners without bridges
-  std::vector<std::uint32_t> joined_;
+  Rings& rings;
+  const Execution& execution;
+  const std::size_t count = rings.size();  ///< number of corners without bridges
+  std::vector<std::uint32_t> joined{};
 };
 
 /// Reflex corners in the cells of a grid: only these may lie in an ear.
@@ -196,7 +189,7 @@ class ReflexGrid {
     }
     std::vector<std::uint32_t> reflex;
     for (const std::uint32_t i : corners)
-      if (orientation(rings.at(rings.last(i)), rings.at(i), rings.at(rings.next(i))) <= 0) reflex.push_back(i);
+      if (rings.turn(i) <= 0) reflex.push_back(i);
     side_ = std::clamp(int(std::sqrt(double(reflex.size()))), 1, most_cells);
     cells_.resize(std::size_t(side_) * std::size_t(side_));
     for (const std::uint32_t i : reflex) {
@@ -231,105 +224,96 @@ class ReflexGrid {
   std::vector<std::vector<std::uint32_t>> cells_;
 };
 
-class EarCutter {
- public:
-  EarCutter(Rings& rings, const std::vector<std::uint32_t>& corners, std::vector<FlatTriangle>& triangles)
-      : rings_(rings), grid_(rings, corners), is_cut_(rings.size()), left_(corners.size()), triangles_(triangles) {}
-
+struct EarCutter {
   void run(std::uint32_t corner, const Execution& execution) {
     std::size_t looked_at = 0, since_cut = 0;
     Patience patience = Patience::ears;
-    while (left_ > 2) {
+    while (left > 2) {
       if (++looked_at % corners_per_poll == 0) check_cancelled(execution);
-      const std::uint32_t next = rings_.next(corner);
+      const std::uint32_t next = rings.next(corner);
       if (may_go(corner, patience)) {
         cut(corner);
         since_cut = 0;
         patience = Patience::ears;
-        corner = rings_.next(next);  // skips the next corner, whose triangle would be as narrow again
-        while (is_cut_[corner]) corner = rings_.next(corner);
+        corner = rings.next(next);  // skips the next corner, whose triangle would be as narrow again
+        while (is_cut[corner]) corner = rings.next(corner);
         continue;
       }
       corner = next;
-      if (++since_cut < left_) continue;
+      if (++since_cut < left) continue;
       patience = Patience(int(patience) + 1);
       since_cut = 0;
     }
   }
 
- private:
   /// The kind of corner that may be cut off. A later kind is used only if there is no corner of an earlier kind.
   enum class Patience : std::uint8_t { ears, flat, crossing, any };
 
   [[nodiscard]] bool may_go(std::uint32_t i, Patience patience) const {
-    const int turn = orientation(rings_.at(rings_.last(i)), rings_.at(i), rings_.at(rings_.next(i)));
+    const int turn = rings.turn(i);
     if (turn > 0) return patience >= Patience::crossing || is_ear(i);
     return patience == Patience::any || (turn == 0 && patience >= Patience::flat);
   }
 
   [[nodiscard]] bool is_ear(std::uint32_t i) const {
-    const glm::vec2 &a = rings_.at(rings_.last(i)), &b = rings_.at(i), &c = rings_.at(rings_.next(i));
+    const glm::vec2 &a = rings.at(rings.last(i)), &b = rings.at(i), &c = rings.at(rings.next(i));
     const auto stands_in = [&](std::uint32_t k) {
-      if (is_cut_[k] || k == i || k == rings_.last(i) || k == rings_.next(i)) return false;
-      const glm::vec2& p = rings_.at(k);
+      if (is_cut[k] || k == i || k == rings.last(i) || k == rings.next(i)) return false;
+      const glm::vec2& p = rings.at(k);
       if (p == a || p == c) return false;
       // Another corner at the same place blocks the ear if one of its sides leads into the ear.
-      if (p == b) return leads_into(i, rings_.at(rings_.last(k))) || leads_into(i, rings_.at(rings_.next(k)));
+      if (p == b) return leads_into(i, rings.at(rings.last(k))) || leads_into(i, rings.at(rings.next(k)));
       return orientation(a, b, p) >= 0 && orientation(b, c, p) >= 0 && orientation(c, a, p) >= 0;
     };
-    return !grid_.any(glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c)), stands_in);
+    return !grid.any(glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c)), stands_in);
   }
 
   [[nodiscard]] bool leads_into(std::uint32_t ear, const glm::vec2& p) const {
-    const glm::vec2 &a = rings_.at(rings_.last(ear)), &b = rings_.at(ear), &c = rings_.at(rings_.next(ear));
+    const glm::vec2 &a = rings.at(rings.last(ear)), &b = rings.at(ear), &c = rings.at(rings.next(ear));
     return orientation(a, b, p) > 0 && orientation(b, c, p) > 0;
   }
 
-  /// Cuts off an ear and the spikes that it leaves. A spike has no width, and would hide the direction of the sides
-  /// beside it.
+  /// Cuts an ear, and spikes that it leaves, which would hide the direction of the sides beside them.
   void cut(std::uint32_t i) {
-    std::uint32_t ends[] = {rings_.last(i), rings_.next(i)};
+    std::uint32_t ends[] = {rings.last(i), rings.next(i)};
     take(i);
     for (std::uint32_t& end : ends)
-      while (left_ > 2 && !is_cut_[end] && is_spike(end)) {
-        const std::uint32_t before = rings_.last(end);
+      while (left > 2 && !is_cut[end] && is_spike(end)) {
+        const std::uint32_t before = rings.last(end);
         take(end);
         end = before;
       }
   }
 
   [[nodiscard]] bool is_spike(std::uint32_t i) const {
-    const glm::vec2 &a = rings_.at(rings_.last(i)), &b = rings_.at(i), &c = rings_.at(rings_.next(i));
-    if (a == b || b == c) return true;
-    return orientation(a, b, c) == 0 && is_left_of(a, b) == is_left_of(c, b);
+    const glm::vec2 &a = rings.at(rings.last(i)), &b = rings.at(i), &c = rings.at(rings.next(i));
+    return a == b || b == c || (orientation(a, b, c) == 0 && is_left_of(a, b) == is_left_of(c, b));
   }
 
   void take(std::uint32_t i) {
-    const glm::vec2 &a = rings_.at(rings_.last(i)), &b = rings_.at(i), &c = rings_.at(rings_.next(i));
-    if (a != b && b != c && c != a) triangles_.push_back({a, b, c});
-    rings_.remove(i);
-    is_cut_[i] = 1;
-    --left_;
+    const glm::vec2 &a = rings.at(rings.last(i)), &b = rings.at(i), &c = rings.at(rings.next(i));
+    if (a != b && b != c && c != a) triangles.push_back({a, b, c});
+    rings.remove(i);
+    is_cut[i] = 1;
+    --left;
   }
 
-  Rings& rings_;
-  const ReflexGrid grid_;
-  std::vector<std::uint8_t> is_cut_;
-  std::size_t left_;
-  std::vector<FlatTriangle>& triangles_;
+  Rings& rings;
+  const std::vector<std::uint32_t>& corners;
+  std::vector<FlatTriangle>& triangles;
+  const ReflexGrid grid{rings, corners};
+  std::vector<std::uint8_t> is_cut = std::vector<std::uint8_t>(rings.size());
+  std::size_t left = corners.size();
 };
 
 }  // namespace
 
 void fill(const Region& region, std::vector<FlatTriangle>& triangles, const Execution& execution) {
   Rings rings(region);
-  Joiner(rings, execution).run();
+  Joiner{rings, execution}.run();
   std::vector<std::uint32_t> corners;
-  const std::uint32_t first = rings.firsts()[0];
-  std::uint32_t i = first;
-  do corners.push_back(i);
-  while ((i = rings.next(i)) != first);
-  EarCutter(rings, corners, triangles).run(first, execution);
+  rings.append_ring(rings.firsts[0], corners);
+  EarCutter{rings, corners, triangles}.run(corners[0], execution);
 }
 
 }  // namespace frontmost::lines_detail

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments are joined at places that are equal to the bit. If several segments continue at a place, the leftmost is
-// taken, so that outlines touch but never cross:
-//
-//        \ | /          a walk from below takes the left one; another walk that comes by, or begins there,
-//         \|/           takes the others
-//          o
-//
-// A line that does not close is joined to another line, or to itself, where their ends are near. Closed lines are
-// nested, and each has a winding number on either side. A line bounds a region if one of its sides is filled and the
-// other is not. It is then the outer line of a region, or a hole in the smallest region around it.
+// Segments are joined at places that are equal to the bit. Where several continue at a place, the leftmost is taken, so
+// that outlines touch but never cross. A line that does not close is joined to another line, or to itself, where their
+// ends are near. Closed lines are nested, each with a winding number on either side. A line bounds a region if one side
+// is filled and the other is not: as the outer line of a region, or as a hole in the smallest region around it.
 #include "sections/regions.h"
 
 #include <algorithm>
@@ -29,6 +23,7 @@ constexpr std::size_t steps_per_poll = 1 << 14;
 /// A segment between two places, by their numbers.
 struct Step {
   std::uint32_t from, to;
+  friend auto operator<=>(const Step&, const Step&) = default;
 };
 
 /// The steps of segments, without duplicates; steps in opposite directions cancel out. Sets `places`.
@@ -42,24 +37,19 @@ std::vector<Step> steps_of(const std::vector<CutSegment>& segments, std::vector<
   const auto number = [&](const glm::vec2& p) {
     return std::uint32_t(std::lower_bound(places.begin(), places.end(), p, is_left_of) - places.begin());
   };
-  struct Way {
-    std::uint32_t low, high;
-    int forwards;
-  };
-  std::vector<Way> ways;
+  std::vector<std::pair<Step, int>> ways;  // from the lower place, and whether forwards or backwards
   for (const CutSegment& segment : segments) {
     const std::uint32_t from = number(segment.from), to = number(segment.to);
-    if (from != to) ways.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
+    if (from != to) ways.push_back({{std::min(from, to), std::max(from, to)}, from < to ? 1 : -1});
   }
-  std::sort(ways.begin(), ways.end(),
-            [](const Way& a, const Way& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
+  std::sort(ways.begin(), ways.end());
   std::vector<Step> steps;
   for (std::size_t i = 0; i < ways.size();) {
-    const Way& way = ways[i];
+    const Step way = ways[i].first;
     int sum = 0;
-    for (; i < ways.size() && ways[i].low == way.low && ways[i].high == way.high; ++i) sum += ways[i].forwards;
-    if (sum > 0) steps.push_back({way.low, way.high});
-    if (sum < 0) steps.push_back({way.high, way.low});
+    for (; i < ways.size() && ways[i].first == way; ++i) sum += ways[i].second;
+    if (sum > 0) steps.push_back(way);
+    if (sum < 0) steps.push_back({way.to, way.from});
   }
   return steps;
 }
@@ -72,94 +62,81 @@ Buckets<std::uint32_t> steps_at(const std::vector<Step>& steps, std::size_t plac
 }
 
 /// Walks along steps until none is left.
-class Walker {
- public:
-  Walker(const std::vector<glm::vec2>& places, const std::vector<Step>& steps, const Execution& execution)
-      : places_(places),
-        steps_(steps),
-        execution_(execution),
-        out_(steps_at(steps, places.size(), &Step::from, execution)),
-        in_(steps_at(steps, places.size(), &Step::to, execution)),
-        is_used_(steps.size()),
-        at_(places.size(), no_index) {}
-
+struct Walker {
   void run() {
     // Open lines begin at places with more steps out than in.
-    for (std::uint32_t i = 0; i < steps_.size(); ++i)
-      if (out_[steps_[i].from].size() > in_[steps_[i].from].size()) walk(i);
-    for (std::uint32_t i = 0; i < steps_.size(); ++i) walk(i);
+    for (std::uint32_t i = 0; i < steps.size(); ++i)
+      if (out[steps[i].from].size() > in[steps[i].from].size()) walk(i);
+    for (std::uint32_t i = 0; i < steps.size(); ++i) walk(i);
   }
 
-  std::vector<SectionOutline> closed, open;
-  bool is_wound_alike = true;
-
- private:
   void walk(std::uint32_t first) {
-    if (is_used_[first]) return;
-    path_ = {steps_[first].from};
-    at_[path_[0]] = 0;
+    if (is_used[first]) return;
+    path = {steps[first].from};
+    at[path[0]] = 0;
     for (std::uint32_t to = take(first, false); to != no_index; to = next()) {
-      if (at_[to] == no_index) {
-        at_[to] = std::uint32_t(path_.size());
-        path_.push_back(to);
+      if (at[to] == no_index) {
+        at[to] = std::uint32_t(path.size());
+        path.push_back(to);
         continue;
       }
-      take_loop(at_[to]);
+      const std::size_t begin = at[to];  // the path closes a loop from there
+      if (path.size() - begin > 2) closed.push_back(points_from(begin));
+      for (std::size_t i = begin + 1; i < path.size(); ++i) at[path[i]] = no_index;
+      path.resize(begin + 1);
     }
-    if (path_.size() > 1) open.push_back(points_from(0));
-    for (const std::uint32_t place : path_) at_[place] = no_index;
-  }
-
-  /// Removes a loop from the path and keeps it. The path's end has come back to the path's place number `begin`.
-  void take_loop(std::size_t begin) {
-    if (path_.size() - begin > 2) closed.push_back(points_from(begin));
-    for (std::size_t i = begin + 1; i < path_.size(); ++i) at_[path_[i]] = no_index;
-    path_.resize(begin + 1);
+    if (path.size() > 1) open.push_back(points_from(0));
+    for (const std::uint32_t place : path) at[place] = no_index;
   }
 
   [[nodiscard]] SectionOutline points_from(std::size_t begin) const {
     SectionOutline points;
-    for (std::size_t i = begin; i < path_.size(); ++i) points.push_back(places_[path_[i]]);
+    for (std::size_t i = begin; i < path.size(); ++i) points.push_back(places[path[i]]);
     return points;
   }
 
   std::uint32_t take(std::uint32_t step, bool is_turned) {
-    if (++taken_ % steps_per_poll == 0) check_cancelled(execution_);
-    is_used_[step] = 1;
+    if (++taken % steps_per_poll == 0) check_cancelled(execution);
+    is_used[step] = 1;
     if (is_turned) is_wound_alike = false;
-    return is_turned ? steps_[step].from : steps_[step].to;
+    return is_turned ? steps[step].from : steps[step].to;
   }
 
   /// Takes the leftmost unused step from the path's end. \returns the place to which it leads; no_index if there is
   /// none.
   std::uint32_t next() {
-    const std::uint32_t end = path_.back();
+    const std::uint32_t end = path.back();
     std::uint32_t best = no_index;
-    for (const std::uint32_t step : out_[end])
-      if (!is_used_[step] && (best == no_index || is_before(steps_[step].to, steps_[best].to))) best = step;
+    for (const std::uint32_t step : out[end])
+      if (!is_used[step] && (best == no_index || is_before(steps[step].to, steps[best].to))) best = step;
     if (best != no_index) return take(best, false);
-    for (const std::uint32_t step : in_[end])
-      if (!is_used_[step]) return take(step, true);
+    for (const std::uint32_t step : in[end])
+      if (!is_used[step]) return take(step, true);
     return no_index;
   }
 
   /// Whether place a comes before place b, clockwise around the path's end, counted from the direction from which the
   /// path came.
   [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b) const {
-    if (path_.size() < 2) return false;
-    const glm::vec2 &from = places_[path_[path_.size() - 2]], &end = places_[path_.back()];
-    const int side_a = orientation(from, end, places_[a]), side_b = orientation(from, end, places_[b]);
+    if (path.size() < 2) return false;
+    const glm::vec2 &from = places[path[path.size() - 2]], &end = places[path.back()];
+    const int side_a = orientation(from, end, places[a]), side_b = orientation(from, end, places[b]);
     if (side_a != side_b) return side_a > side_b;
-    return orientation(end, places_[b], places_[a]) > 0;
+    return orientation(end, places[b], places[a]) > 0;
   }
 
-  const std::vector<glm::vec2>& places_;
-  const std::vector<Step>& steps_;
-  const Execution& execution_;
-  const Buckets<std::uint32_t> out_, in_;
-  std::vector<std::uint8_t> is_used_;
-  std::vector<std::uint32_t> path_, at_;  ///< at_: by place, the place's index in the path, or no_index
-  std::size_t taken_ = 0;
+  const std::vector<glm::vec2>& places;
+  const std::vector<Step>& steps;
+  const Execution& execution;
+  const Buckets<std::uint32_t> out = steps_at(steps, places.size(), &Step::from, execution);
+  const Buckets<std::uint32_t> in = steps_at(steps, places.size(), &Step::to, execution);
+  std::vector<std::uint8_t> is_used = std::vector<std::uint8_t>(steps.size());
+  std::vector<std::uint32_t> path{};
+  std::vector<std::uint32_t> at =
+      std::vector<std::uint32_t>(places.size(), no_index);  ///< by place: its number in the path
+  std::size_t taken = 0;
+  std::vector<SectionOutline> closed{}, open{};
+  bool is_wound_alike = true;
 };
 
 /// For each line, the line that begins nearest to its end, within `gap`. No line succeeds two others.
@@ -183,33 +160,6 @@ std::vector<std::uint32_t> successors(const std::vector<SectionOutline>& lines, 
     if (next[i] != no_index) is_taken[next[i]] = 1;
   }
   return next;
-}
-
-/// Joins lines across small gaps. \returns the closed lines; `open_count` counts the others.
-std::vector<SectionOutline> close_gaps(const std::vector<SectionOutline>& lines, double gap, std::size_t& open_count) {
-  const std::vector<std::uint32_t> next = successors(lines, gap);
-  std::vector<std::uint8_t> is_done(lines.size()), has_before(lines.size());
-  for (const std::uint32_t k : next)
-    if (k != no_index) has_before[k] = 1;
-  const auto follow = [&](std::uint32_t k, SectionOutline& line) {
-    for (; k != no_index && !is_done[k]; k = next[k]) {
-      is_done[k] = 1;
-      line.insert(line.end(), lines[k].begin(), lines[k].end());
-    }
-  };
-  SectionOutline line;
-  for (std::uint32_t i = 0; i < lines.size(); ++i) {
-    if (has_before[i]) continue;
-    ++open_count;
-    follow(i, line);
-  }
-  std::vector<SectionOutline> closed;
-  for (std::uint32_t i = 0; i < lines.size(); ++i) {
-    line.clear();
-    follow(i, line);
-    if (line.size() > 2) closed.push_back(line);
-  }
-  return closed;
 }
 
 constexpr double area_rounding = 1e-12;  // an area is 0 up to this share of the sum of absolute terms
@@ -269,34 +219,12 @@ bool lies_in(const Ring& inner, const Ring& outer) {
   return std::abs(inner.area) < std::abs(outer.area);
 }
 
-/// For each ring, the rings that contain it.
-std::vector<std::vector<std::uint32_t>> rings_around(const std::vector<Ring>& rings, const Execution& execution) {
-  std::vector<std::vector<std::uint32_t>> around(rings.size());
-  for (std::uint32_t i = 0; i < rings.size(); ++i) {
-    check_cancelled(execution);
-    for (std::uint32_t k = 0; k < rings.size(); ++k)
-      if (k != i && lies_in(rings[i], rings[k])) around[i].push_back(k);
-  }
-  return around;
-}
-
-/// What begins within the ring. 1: a filled region; -1: a hole; 0: neither.
-int boundary_of(const std::vector<Ring>& rings, const std::vector<std::uint32_t>& around, std::uint32_t ring,
-                bool by_winding) {
-  const auto turn = [&](std::uint32_t k) { return rings[k].area > 0 ? 1 : -1; };
-  int winding = 0;
-  for (const std::uint32_t k : around) winding += turn(k);
-  const int within = winding + turn(ring);
-  const auto is_filled = [&](int number) { return by_winding ? number != 0 : number % 2 != 0; };
-  return int(is_filled(within)) - int(is_filled(winding));
-}
-
 }  // namespace
 
 Outlines find_outlines(const std::vector<CutSegment>& segments, const Execution& execution) {
   std::vector<glm::vec2> places;
   const std::vector<Step> steps = steps_of(segments, places);
-  Walker walker(places, steps, execution);
+  Walker walker{places, steps, execution};
   walker.run();
   Outlines all{std::move(walker.closed), 0, walker.is_wound_alike};
   if (walker.open.empty()) return all;
@@ -305,8 +233,19 @@ Outlines find_outlines(const std::vector<CutSegment>& segments, const Execution&
     low = glm::min(low, glm::dvec2(place));
     high = glm::max(high, glm::dvec2(place));
   }
-  for (SectionOutline& line : close_gaps(walker.open, joined_gap * glm::distance(low, high), all.open_count))
-    all.closed.push_back(std::move(line));
+  const std::vector<SectionOutline>& lines = walker.open;
+  const std::vector<std::uint32_t> next = successors(lines, joined_gap * glm::distance(low, high));
+  std::vector<bool> is_done(lines.size());
+  for (std::uint32_t i = 0; i < lines.size(); ++i) {
+    SectionOutline line;
+    std::uint32_t k = i;
+    for (; k != no_index && !is_done[k]; k = next[k]) {
+      is_done[k] = true;
+      line.insert(line.end(), lines[k].begin(), lines[k].end());
+    }
+    all.open_count += k == no_index;
+    if (k == i && line.size() > 2) all.closed.push_back(std::move(line));
+  }
   return all;
 }
 
@@ -314,10 +253,18 @@ std::vector<Region> regions_of(Outlines outlines, const Execution& execution) {
   std::vector<Ring> rings;
   for (SectionOutline& outline : outlines.closed)
     if (Ring ring = ring_of(std::move(outline)); ring.area != 0) rings.push_back(std::move(ring));
-  const std::vector<std::vector<std::uint32_t>> around = rings_around(rings, execution);
-  std::vector<int> boundary;
-  for (std::uint32_t i = 0; i < rings.size(); ++i)
-    boundary.push_back(boundary_of(rings, around[i], i, outlines.is_wound_alike));
+  std::vector<std::vector<std::uint32_t>> around(rings.size());  // by ring: the rings that contain it
+  std::vector<int> boundary;  // -1: a hole begins within the ring; 1: a filled region; 0: neither
+  const auto turn = [&](std::uint32_t k) { return rings[k].area > 0 ? 1 : -1; };
+  const auto is_filled = [&](int winding) { return outlines.is_wound_alike ? winding != 0 : winding % 2 != 0; };
+  for (std::uint32_t i = 0; i < rings.size(); ++i) {
+    check_cancelled(execution);
+    for (std::uint32_t k = 0; k < rings.size(); ++k)
+      if (k != i && lies_in(rings[i], rings[k])) around[i].push_back(k);
+    int winding = 0;
+    for (const std::uint32_t k : around[i]) winding += turn(k);
+    boundary.push_back(int(is_filled(winding + turn(i))) - int(is_filled(winding)));
+  }
   std::vector<Region> regions;
   std::vector<std::size_t> region_of(rings.size());
   for (std::uint32_t i = 0; i < rings.size(); ++i) {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Joins the segments in which a plane cuts triangles to closed lines, finds the regions that these lines bound, and
-// fills the regions with triangles.
+// From segments in a plane to closed lines, to the regions that these bound, and to triangles that fill the regions.
 //
 //    segments --find_outlines--> closed lines --regions_of--> outer lines with their holes --fill--> triangles
 //
-// Coordinates are those of the plane, as floats. They are never recomputed, so a filled face shares its vertices with
-// the walls beside it to the bit.
+// Coordinates are never recomputed, so a filled face shares its vertices with the walls beside it to the bit.
 #pragma once
 
 #include <array>
@@ -22,32 +20,26 @@ namespace frontmost::lines_detail {
 
 /// The axes of a cutting plane: two within the plane and one across it. The first two and CuttingPlane::towards are
 /// right-handed, in this order. The plane is perpendicular to a world axis, so coordinates are selected and never
-/// computed. Points in the plane stay there to the bit, and vertices of the cut face are vertices of the walls beside
-/// it.
-class PlaneAxes {
- public:
+/// computed.
+struct PlaneAxes {
   explicit PlaneAxes(const CuttingPlane& plane)
-      : across_(int(plane.towards) % 3), is_minus_(int(plane.towards) >= 3), at_(float(plane.at)) {}
+      : across(int(plane.towards) % 3), is_minus(int(plane.towards) >= 3), at(float(plane.at)) {}
 
   /// Whether a point lies behind the plane.
-  [[nodiscard]] bool is_behind(const glm::vec3& p) const { return is_minus_ ? p[across_] > at_ : p[across_] < at_; }
+  [[nodiscard]] bool is_behind(const glm::vec3& p) const { return is_minus ? p[across] > at : p[across] < at; }
   [[nodiscard]] glm::vec2 in_plane(const glm::vec3& p) const { return {p[axis(0)], p[axis(1)]}; }
   [[nodiscard]] glm::vec3 in_space(const glm::vec2& p) const {
     glm::vec3 place;
-    place[across_] = at_;
+    place[across] = at;
     place[axis(0)] = p.x;
     place[axis(1)] = p.y;
     return place;
   }
-  [[nodiscard]] int across() const { return across_; }
-  [[nodiscard]] float at() const { return at_; }
+  [[nodiscard]] int axis(int i) const { return (across + (is_minus ? 2 - i : 1 + i)) % 3; }
 
- private:
-  [[nodiscard]] int axis(int i) const { return (across_ + (is_minus_ ? 2 - i : 1 + i)) % 3; }
-
-  int across_;
-  bool is_minus_;
-  float at_;
+  int across;
+  bool is_minus;
+  float at;
 };
 
 /// The segment in which the plane cuts a triangle. If the triangle is wound outwards, the removed part is on the
@@ -85,8 +77,7 @@ using FlatTriangle = std::array<glm::vec2, 3>;
 
 /// Appends counter-clockwise triangles that fill the region. Each side of a triangle is also a side of another triangle
 /// or of an outline. Corners on one line may give triangles without area. All signs are exact. Outlines that cross
-/// themselves are filled by triangles that may overlap and run clockwise, so that their sides have triangles, too. O(n
-/// log n) for usual parts, at worst O(n^2).
+/// themselves are filled by triangles that may overlap and run clockwise. O(n log n) for usual parts, at worst O(n^2).
 void fill(const Region& region, std::vector<FlatTriangle>& triangles, const Execution& execution);
 
 }  // namespace frontmost::lines_detail

@@ -5,8 +5,7 @@
 //           --> plan: paper, scale, places --> strokes, hatching, dimensions, frame --> Page
 //
 // Lines are found before the scale is known, because the drawn lines determine how much room a view takes. Everything
-// measured in millimetres of paper comes after the plan: tolerances of strokes, dashes, hatching, numbers. Details that
-// are too short or too dense for a pen are left out then, not when a file is written.
+// measured in millimetres of paper comes after the plan: tolerances of strokes, dashes, hatching, numbers.
 #include <algorithm>
 #include <cmath>
 
@@ -72,8 +71,8 @@ void check_named_views(const SheetOptions& o) {
 
 void check_section_views(const SheetOptions& o) {
   if (o.sections.empty()) return;
-  if (o.sections.size() > section_letters.size())
-    refuse_option("sections", std::to_string(section_letters.size()) + " are the most");
+  if (o.sections.size() > clear_letters.size())
+    refuse_option("sections", std::to_string(clear_letters.size()) + " are the most");
   for (std::size_t i = 0; i < o.sections.size(); ++i) {
     const SectionView& section = o.sections[i];
     if (is_at_an_angle(section.direction))
@@ -137,8 +136,7 @@ bool wants_centre_lines(const SheetOptions& options) {
   return options.centre_lines.value_or(has_named_views(options) && options.style == DrawingStyle::technical);
 }
 
-/// The finest error that paper shows, or a coarser one if the eye is too near for that. None if even the coarsest error
-/// takes too many triangles: then the model's own triangles look better.
+/// The finest error that paper shows, or a coarser one, if that takes too many triangles; none if all do.
 std::optional<double> tessellation_error(const SheetOptions& options, const Scene& scene, const View& view) {
   if (options.tessellation_error) return options.tessellation_error;
   for (double error = fine_error; error <= coarsest_error; error *= 2)
@@ -164,49 +162,37 @@ bool shows_hidden(const SheetOptions& options, NamedView direction) {
          options.hidden_views->end();
 }
 
-PlannedView draw_planned(std::shared_ptr<const Surfaces> surfaces, const View& view, const SheetOptions& options,
-                         const Execution& execution) {
-  PlannedView result;
-  result.surfaces = std::move(surfaces);
-  LineOptions wanted;
-  wanted.crease_angle = options.crease_angle;
-  wanted.outlines = options.style == DrawingStyle::figure;
-  result.drawing = draw_lines(*result.surfaces, view, wanted, execution);
-  return result;
-}
-
-/// The near and far planes of the options; where the options have none, the planes that enclose the model.
-ClipDistances planes_of(const ClipDistances& fitted, NamedView direction, const SheetOptions& options) {
-  const ClipDistances planes{options.near.value_or(fitted.near), options.far.value_or(fitted.far)};
-  if (!(planes.near < planes.far) && !(options.near && options.far))
-    refuse_option(options.near ? "near" : "far", "leaves nothing of the " + std::string(view_name(direction)) +
-                                                     " view, in which the model lies from " +
-                                                     number_text(fitted.near, 3) + " to " + number_text(fitted.far, 3));
-  return planes;
-}
-
-double millimetres_per_pixel(const View& view, const SheetOptions& options, const Scene& scene) {
+/// Draws the lines of a view whose surfaces are known, of a model in this scene.
+void draw_lines_of(PlannedView& planned, const View& view, const Scene& scene, const SheetOptions& options,
+                   const Execution& execution) {
+  const LineOptions wanted{.crease_angle = options.crease_angle, .outlines = options.style == DrawingStyle::figure};
+  planned.drawing = draw_lines(*planned.surfaces, view, wanted, execution);
   const Projection& p = view.projection;
-  return p.orthographic ? (p.right - p.left) / view.width * millimetres_per_unit(options, scene) : 1;
+  if (p.orthographic)
+    planned.millimetres_per_pixel = (p.right - p.left) / view.width * millimetres_per_unit(options, scene);
 }
 
 PlannedView draw_named(const Surfaces& surfaces, NamedView direction, const SectionView* section,
                        const SheetOptions& options, const Execution& execution) {
   View view = frame(surfaces, fine_grid.x, fine_grid.y,
                     {.direction = direction, .orthographic = true, .objects = FramedObjects::all});
-  view.projection.clip = planes_of(view.projection.clip, direction, options);
-  std::shared_ptr<const Surfaces> shown = surfaces_for(surfaces, view, options, execution);
-  const CutScene cut = section ? cut_for(*section, *shown, view, execution) : CutScene{shown, nullptr, {}};
-  PlannedView result = draw_planned(cut.surfaces, view, options, execution);
+  ClipDistances& planes = view.projection.clip;
+  const ClipDistances fitted = planes;  // they enclose the model
+  planes = {options.near.value_or(fitted.near), options.far.value_or(fitted.far)};
+  if (!(planes.near < planes.far) && !(options.near && options.far))
+    refuse_option(options.near ? "near" : "far", "leaves nothing of the " + std::string(view_name(direction)) +
+                                                     " view, in which the model lies from " +
+                                                     number_text(fitted.near, 3) + " to " + number_text(fitted.far, 3));
+  PlannedView result;
   result.direction = direction;
-  result.section = cut.section;
-  result.plane = cut.plane;
   result.shows_hidden = !section && shows_hidden(options, direction);
-  result.millimetres_per_pixel = millimetres_per_pixel(view, options, surfaces.scene());
+  result.surfaces = surfaces_for(surfaces, view, options, execution);
+  if (section) cut_surfaces(result, *section, view, execution);
+  draw_lines_of(result, view, surfaces.scene(), options, execution);
   return result;
 }
 
-/// Draws the views of the options, then the sections, each with its lines but without a place.
+/// The views of the options, then the sections, without places.
 std::vector<PlannedView> draw_named_views(const Surfaces& surfaces, const SheetOptions& options,
                                           const Execution& execution) {
   std::vector<PlannedView> views;
@@ -217,18 +203,10 @@ std::vector<PlannedView> draw_named_views(const Surfaces& surfaces, const SheetO
   for (std::size_t i = 0; i < options.sections.size(); ++i) {
     const SectionView& section = options.sections[i];
     PlannedView& view = views.emplace_back(draw_named(surfaces, section.direction, &section, options, execution));
-    view.letter = section_letters[i];
+    view.letter = clear_letters[i];
     view.name = view.placed.name = view.letter + "-" + view.letter;
   }
   return views;
-}
-
-PlannedView draw_given_view(const Surfaces& surfaces, const View& view, const SheetOptions& options,
-                            const Execution& execution) {
-  PlannedView result = draw_planned(surfaces_for(surfaces, view, options, execution), view, options, execution);
-  result.shows_hidden = options.hidden != HiddenLines::none;
-  result.millimetres_per_pixel = millimetres_per_pixel(view, options, surfaces.scene());
-  return result;
 }
 
 /// Finds the rounds of the views that need them, once for views of the same surfaces.
@@ -244,38 +222,28 @@ void find_rounds_of(std::vector<PlannedView>& views, const SheetOptions& options
   }
 }
 
-/// The middle of the model, where views in line have their anchors.
-glm::dvec3 middle_of(const Box& box) {
-  const glm::dvec3 low(box.low), high(box.high);
-  return box.is_empty() ? glm::dvec3(0) : low + (high - low) * 0.5;
-}
-
-/// The cells of the views, and the pixel of each view that lies at its cell's anchor.
-struct Cells {
+/// The cells of the views, whose anchors are set: views in line have theirs in the middle of the model.
+std::vector<ViewCell> cells_of(std::vector<PlannedView>& views, const Surfaces& surfaces, const SheetOptions& options) {
+  const glm::dvec3 low(surfaces.bounds().low), high(surfaces.bounds().high);
+  const glm::dvec3 middle = surfaces.bounds().is_empty() ? glm::dvec3(0) : low + (high - low) * 0.5;
   std::vector<ViewCell> cells;
-  std::vector<glm::dvec2> anchors;
-};
-
-Cells cells_of(const std::vector<PlannedView>& views, const Surfaces& surfaces, const SheetOptions& options) {
-  Cells all;
-  for (const PlannedView& view : views) {
+  for (PlannedView& view : views) {
     const View& camera = view.drawing.view;
     DrawingBounds box = bounds_of(view.drawing, view.shows_hidden);
     if (options.keeps_picture || box.is_empty()) box = {glm::dvec2(0), glm::dvec2(camera.width, camera.height)};
-    ViewCell& cell = all.cells.emplace_back();
-    glm::dvec2 anchor = (box.low + box.high) * 0.5;
+    ViewCell& cell = cells.emplace_back();
+    view.anchor = (box.low + box.high) * 0.5;
     if (view.direction) {
       const glm::ivec2 place = cell_of(*view.direction, options.projection);
       cell.column = place.x;
       cell.row = place.y;
-      if (!is_at_an_angle(*view.direction)) anchor = on_screen(camera, middle_of(surfaces.bounds()));
+      if (!is_at_an_angle(*view.direction)) view.anchor = on_screen(camera, middle);
     }
-    cell.low = (box.low - anchor) * view.millimetres_per_pixel;
-    cell.high = (box.high - anchor) * view.millimetres_per_pixel;
+    cell.low = (box.low - view.anchor) * view.millimetres_per_pixel;
+    cell.high = (box.high - view.anchor) * view.millimetres_per_pixel;
     if (view.rounds && !view.rounds->rounds.empty()) cell.room_before = cell.room_behind = glm::dvec2(centre_overshoot);
-    all.anchors.push_back(anchor);
   }
-  return all;
+  return cells;
 }
 
 constexpr double usual_crease = std::numbers::pi / 6;  // grazing angle of intersections without a crease angle
@@ -315,79 +283,56 @@ void check_spacing(const char* field, double spacing, double least) {
                   number_text(std::ceil(least * 100) / 100, 3) + " or more, or a smaller page or scale");
 }
 
-StippleOptions stipple_options(const SheetOptions& options, const View& view, double millimetres) {
-  constexpr double most_dots = 2e7;  // the limit of stipple()
-  const double least = std::max(1.0, std::sqrt(double(view.width) * view.height / most_dots));
-  check_spacing("stipple", *options.stipple, least * millimetres);
-  return {*options.stipple / millimetres, tone_options(options, view), !options.plot, options.plot};
-}
-
-HatchOptions hatch_options(const SheetOptions& options, const View& view, double millimetres) {
-  check_spacing("hatch", *options.hatch, millimetres);
-  HatchOptions hatching;
-  hatching.sets = hatch_sets(*options.hatch / millimetres, options.hatch_angle);
-  hatching.tone = tone_options(options, view);
-  hatching.shortest = std::min(shortest_hatch / millimetres, 1000.0);
-  hatching.by_instance = !options.plot;
-  hatching.nearest_first = options.plot;
-  return hatching;
-}
-
-/// Adds hatching and dots if requested. \throws Error limit_exceeded if the view has too few pixels for them.
+/// \throws Error limit_exceeded if the view has too few pixels for hatching or dots.
 void place_tones(PlannedView& view, const SheetOptions& options, const Execution& execution) {
   const View& camera = view.drawing.view;
   const double millimetres = view.placed.millimetres_per_pixel;
-  if (options.hatch)
-    view.placed.hatching = hatch(*view.surfaces, camera, hatch_options(options, camera, millimetres), execution);
-  if (options.stipple)
-    view.placed.stippling = stipple(*view.surfaces, camera, stipple_options(options, camera, millimetres), execution);
-}
-
-void place_centre_lines(PlannedView& view, const SheetOptions& options) {
-  if (!view.rounds || !wants_centre_lines(options)) return;
-  CentreLineOptions centre;
-  centre.with_hidden = view.shows_hidden;
-  centre.overshoot = std::min(centre_overshoot / view.placed.millimetres_per_pixel, 1e6);
-  view.placed.centre_lines = centre_lines_of(*view.rounds, view.drawing, view.placed.strokes, centre);
+  if (options.hatch) {
+    check_spacing("hatch", *options.hatch, millimetres);
+    const HatchOptions lines{hatch_sets(*options.hatch / millimetres, options.hatch_angle),
+                             tone_options(options, camera), std::min(shortest_hatch / millimetres, 1000.0),
+                             !options.plot, options.plot};
+    view.placed.hatching = hatch(*view.surfaces, camera, lines, execution);
+  }
+  if (options.stipple) {
+    constexpr double most_dots = 2e7;  // the limit of stipple()
+    const double least = std::max(1.0, std::sqrt(double(camera.width) * camera.height / most_dots));
+    check_spacing("stipple", *options.stipple, least * millimetres);
+    const StippleOptions dots{*options.stipple / millimetres, tone_options(options, camera), !options.plot,
+                              options.plot};
+    view.placed.stippling = stipple(*view.surfaces, camera, dots, execution);
+  }
 }
 
 std::vector<DimensionedView> dimensioned_views(const std::vector<PlannedView>& views) {
   std::vector<DimensionedView> all;
   for (const PlannedView& planned : views) {
-    DimensionedView& view = all.emplace_back();
-    view.sheet = &planned.placed;
-    view.drawing = &planned.drawing;
-    view.rounds = planned.rounds.get();
-    view.with_hidden = planned.shows_hidden;
     // A section does not show the size of the whole model.
-    view.is_dimensioned = !is_at_an_angle(*planned.direction) && !planned.section;
-    view.taken = planned.taken;
+    const bool is_dimensioned = !is_at_an_angle(*planned.direction) && !planned.section;
+    all.push_back(
+        {&planned.placed, &planned.drawing, planned.rounds.get(), planned.shows_hidden, is_dimensioned, planned.taken});
   }
   return all;
 }
 
-/// Reserves room in the cells for the overall sizes of their views.
-void keep_room_for_sizes(std::vector<ViewCell>& cells, const std::vector<PlannedView>& views) {
-  const std::vector<OverallSizes> sizes = overall_sizes_of(dimensioned_views(views));
+/// Sets the places of the views. \returns the plan.
+SheetPlan place_views(std::vector<PlannedView>& views, const Surfaces& surfaces, const SheetOptions& options) {
+  std::vector<ViewCell> cells = cells_of(views, surfaces, options);
+  place_sections(cells, views);
+  keep_section_room(cells, views);
+  std::vector<OverallSizes> sizes(views.size());
+  if (options.dimensions) sizes = overall_sizes_of(dimensioned_views(views));
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const glm::dvec2 room = room_for(sizes[i], DimensionOptions().text_height);
     if (room.x > 0) cells[i].room_before.x = std::max(cells[i].room_before.x, views[i].taken.x + room.x);
     if (room.y > 0) cells[i].room_behind.y = std::max(cells[i].room_behind.y, views[i].taken.y + room.y);
   }
-}
-
-/// Lays out the views and sets their places. \returns the plan.
-SheetPlan place_views(std::vector<PlannedView>& views, const Surfaces& surfaces, const SheetOptions& options) {
-  Cells all = cells_of(views, surfaces, options);
-  place_sections(all.cells, views);
-  keep_section_room(all.cells, views);
-  if (options.dimensions) keep_room_for_sizes(all.cells, views);
   const bool has_scale = views[0].drawing.view.projection.orthographic;
-  SheetPlan plan = plan_sheet(SheetLayout(all.cells, glm::dvec2(gap_between_views)), options, has_scale);
+  SheetPlan plan = plan_sheet(SheetLayout(cells, glm::dvec2(gap_between_views)), options, has_scale);
   for (std::size_t i = 0; i < views.size(); ++i) {
     SheetView& placed = views[i].placed;
     placed.millimetres_per_pixel = views[i].millimetres_per_pixel * plan.scale;
-    placed.origin = plan.anchors[i] - all.anchors[i] * placed.millimetres_per_pixel;
+    placed.origin = plan.anchors[i] - views[i].anchor * placed.millimetres_per_pixel;
   }
   return plan;
 }
@@ -425,7 +370,6 @@ void add_frame(Page& page, const SheetOptions& options, const Scene& scene, std:
   page.layers.push_back(draw_frame({page.width, page.height}, block));
 }
 
-/// Finishes a sheet from its drawn views.
 Sheet finish(std::vector<PlannedView> views, const Surfaces& surfaces, const SheetOptions& options,
              const Execution& execution) {
   report_progress(execution, "rounds", 0);
@@ -438,7 +382,10 @@ Sheet finish(std::vector<PlannedView> views, const Surfaces& surfaces, const She
   hatch_sections(views, options, execution);
   for (PlannedView& view : views) {
     place_tones(view, options, execution);
-    place_centre_lines(view, options);
+    if (!view.rounds || !wants_centre_lines(options)) continue;
+    const double overshoot = std::min(centre_overshoot / view.placed.millimetres_per_pixel, 1e6);
+    view.placed.centre_lines =
+        centre_lines_of(*view.rounds, view.drawing, view.placed.strokes, {view.shows_hidden, overshoot});
   }
   report_progress(execution, "page", 0);
   const LinePens pens = pens_of(options);
@@ -491,8 +438,10 @@ Sheet draw_view(const Surfaces& surfaces, const View& view, const SheetOptions& 
   validate(options);
   validate_for_view(options, view.projection);
   report_progress(execution, "views", 0);
-  std::vector<PlannedView> views;
-  views.push_back(draw_given_view(surfaces, view, options, execution));
+  std::vector<PlannedView> views(1);
+  views[0].surfaces = surfaces_for(surfaces, view, options, execution);
+  views[0].shows_hidden = options.hidden != HiddenLines::none;
+  draw_lines_of(views[0], view, surfaces.scene(), options, execution);
   return finish(std::move(views), surfaces, options, execution);
 }
 

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The frame of a sheet by ISO 5457 (border, zones, centring and trimming marks), and its title block by ISO 7200.
 //
-//      1   2   3   4          Zones are counted from the middle of each side, an even number on each. Their border is
-//    +---+---+---+---+        outside of the frame, so that the drawing space stays whole. Pages as narrow as A4 have
-//  A |               | A      letters and numbers on two sides only.
-//    +               +
-//  B |               | B      Letters have the heights of ISO 3098. If a text is too wide for its field, it is split
-//    +---+---+---+---+        into two lines before its letters get smaller. Nothing is cut off.
+//      1   2   3   4        Zones are counted from the middle of each side, an even number on each. Pages as narrow as
+//    +---+---+---+---+      A4 have letters and numbers on two sides only.
+//  A |               | A
+//    +               +      Letters have the heights of ISO 3098. A text too wide for its field is split into two lines
+//  B |               | B    before its letters get smaller. Nothing is cut off.
+//    +---+---+---+---+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
-#include "frontmost/sheets.h"
 #include "sheets/paper.h"
 
 namespace frontmost::detail {
@@ -150,25 +149,6 @@ class BlockDrawing {
   std::map<double, PageGroup> texts_;  ///< by text height, since each height has its pen
 };
 
-/// Appends the groups of a title block whose upper left corner is `corner`.
-void draw_title_block(const TitleBlock& block, const glm::dvec2& corner, PageLayer& layer) {
-  BlockDrawing drawing(corner);
-  drawing.add({"Legal owner", {0, 0}, {69, 18}, 3.5, 2}, block.owner);
-  drawing.add({"Scale", {0, 18}, {45, 27}, 2.5, 1}, block.scale);
-  drawing.add({"Unit", {0, 27}, {22.5, 36}, 2.5, 1}, block.unit);
-  drawing.add({"Paper", {22.5, 27}, {45, 36}, 2.5, 1}, block.paper);
-  drawing.add_symbol({"Projection", {45, 18}, {69, 36}, 3.5, 1}, block.projection);
-  drawing.add({"Created by", {69, 0}, {129, 9}, 2.5, 1}, block.author);
-  drawing.add({"Approved by", {69, 9}, {129, 18}, 2.5, 1}, "");  // signed by hand
-  drawing.add({"Title", {69, 18}, {129, 36}, 5, 2}, block.title);
-  drawing.add({"Document type", {129, 0}, {180, 9}, 2.5, 1}, "Technical drawing");
-  drawing.add({"Number", {129, 9}, {180, 27}, 5, 1}, block.number);
-  drawing.add({"Date of issue", {129, 27}, {159, 36}, 2.5, 1}, block.date);
-  drawing.add({"Sheet", {159, 27}, {180, 36}, 2.5, 1},
-              std::to_string(block.sheet) + "/" + std::to_string(block.sheets));
-  drawing.finish(layer);
-}
-
 std::vector<glm::dvec2> rectangle(const glm::dvec2& low, const glm::dvec2& high) {
   return {low, {high.x, low.y}, high, {low.x, high.y}};
 }
@@ -180,18 +160,17 @@ constexpr double mark_inside = 10;                       // length of centring m
 constexpr double narrow_page = 210;                      // a page this narrow, such as A4, has zones on two sides only
 constexpr double frame_width = 0.7, zone_width = 0.35, zone_text = 3.5;
 
-/// A, B, ... without I and O, which look like digits; AA follows Z.
+/// A, B, ...; AA follows Z.
 std::string zone_letter(int number) {
-  constexpr std::string_view letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";
-  const int count = int(letters.size());
+  constexpr int count = int(clear_letters.size());
   std::string name;
-  for (int rest = number; rest >= 0; rest = rest / count - 1)
-    name.insert(name.begin(), letters[std::size_t(rest % count)]);
+  for (; number >= 0; number = number / count - 1)
+    name.insert(name.begin(), clear_letters[std::size_t(number % count)]);
   return name;
 }
 
-/// The lines between zones along one axis, in the frame from `low` to `high`, including both ends. The number of zones
-/// is even and nearest to the page's side divided by 50 mm.
+/// The lines between zones along one axis, in the frame from `low` to `high`, including both ends. The even number of
+/// zones is nearest to the page's side divided by 50 mm.
 std::vector<double> zone_ends(double side, double low, double high) {
   const int half = std::max(1, int(std::lround(side / (2 * zone))));
   std::vector<double> ends = {low};
@@ -201,23 +180,19 @@ std::vector<double> zone_ends(double side, double low, double high) {
   return ends;
 }
 
-class FrameDrawing {
- public:
-  explicit FrameDrawing(const glm::dvec2& page)
-      : page_(page), space_(drawing_space(page)), is_narrow_(std::min(page.x, page.y) <= narrow_page) {}
-
+struct FrameDrawing {
   void draw(PageLayer& layer) const {
     PageGroup trimming{"trimming marks", {frame_width, {}}};
     for (const glm::dvec2 corner : {glm::dvec2(0, 0), glm::dvec2(1, 0), glm::dvec2(1, 1), glm::dvec2(0, 1)})
       trimming_mark(trimming, corner);
     PageGroup frame{"frame", {frame_width, {}}};
-    frame.add(rectangle(space_.low, space_.high), true);
+    frame.add(rectangle(space.low, space.high), true);
     centring_marks(frame);
     PageGroup zones{"zones", {zone_width, {}}};
     // The border of the zones is around the frame, or only above it and on its right.
-    const glm::dvec2 low = space_.low - strip, high = space_.high + strip;
-    if (is_narrow_)
-      zones.add(std::vector<glm::dvec2>{{space_.low.x, low.y}, {high.x, low.y}, {high.x, space_.high.y}}, false);
+    const glm::dvec2 low = space.low - strip, high = space.high + strip;
+    if (is_narrow)
+      zones.add(std::vector<glm::dvec2>{{space.low.x, low.y}, {high.x, low.y}, {high.x, space.high.y}}, false);
     else
       zones.add(rectangle(low, high), true);
     PageGroup names{"zones: text", text_pen(zone_text)};
@@ -225,7 +200,6 @@ class FrameDrawing {
     for (PageGroup* const group : {&trimming, &zones, &names, &frame}) layer.groups.push_back(std::move(*group));
   }
 
- private:
   /// Adds a trimming mark: two rectangles of 10 x 5 mm in an L shape. The pen fills them in rounds, because DXF has no
   /// fills.
   void trimming_mark(PageGroup& group, const glm::dvec2& corner) const {
@@ -235,19 +209,19 @@ class FrameDrawing {
     for (double in = frame_width / 2; in < width / 2; in += 0.6 * frame_width) {
       const double far = length - in, near = width - in;
       std::vector<glm::dvec2> points = {{in, in}, {far, in}, {far, near}, {near, near}, {near, far}, {in, far}};
-      for (glm::dvec2& p : points) p = corner * page_ + inwards * p;
+      for (glm::dvec2& p : points) p = corner * page + inwards * p;
       group.add(points, true);
     }
   }
 
   /// Adds marks that lead from the zones' border into the drawing, but not into the title block.
   void centring_marks(PageGroup& group) const {
-    const glm::dvec2 middle = page_ * 0.5;
+    const glm::dvec2 middle = page * 0.5;
     for (const int axis : {0, 1})
       for (const bool at_end : {false, true}) {
-        const double outwards = at_end ? 1 : -1, edge = at_end ? space_.high[axis] : space_.low[axis];
+        const double outwards = at_end ? 1 : -1, edge = at_end ? space.high[axis] : space.low[axis];
         const int across = 1 - axis;
-        const bool meets_block = at_end && middle[across] >= space_.block[across];
+        const bool meets_block = at_end && middle[across] >= space.block[across];
         glm::dvec2 from(0), to(0);
         from[across] = to[across] = middle[across];
         from[axis] = edge + outwards * strip;
@@ -259,16 +233,15 @@ class FrameDrawing {
   /// Adds the zones along an axis: numbers from left to right, letters downwards.
   void zones_along(int axis, PageGroup& lines, PageGroup& names) const {
     const int across = 1 - axis;
-    const std::vector<double> ends = zone_ends(page_[axis], space_.low[axis], space_.high[axis]);
+    const std::vector<double> ends = zone_ends(page[axis], space.low[axis], space.high[axis]);
     for (const bool at_end : {false, true}) {
-      if (is_narrow_ && at_end != (axis == 1)) continue;  // only above, and on the right
-      const double edge = at_end ? space_.high[across] : space_.low[across],
-                   outer = at_end ? edge + strip : edge - strip;
+      if (is_narrow && at_end != (axis == 1)) continue;  // only above, and on the right
+      const double edge = at_end ? space.high[across] : space.low[across], outer = at_end ? edge + strip : edge - strip;
       const auto point = [&](double along, double beside) {
         return axis == 0 ? glm::dvec2(along, beside) : glm::dvec2(beside, along);
       };
       for (const double at : ends)  // centring marks are lines already
-        if (at != page_[axis] / 2) lines.add(std::vector<glm::dvec2>{point(at, edge), point(at, outer)}, false);
+        if (at != page[axis] / 2) lines.add(std::vector<glm::dvec2>{point(at, edge), point(at, outer)}, false);
       for (std::size_t i = 0; i + 1 < ends.size(); ++i)
         add_text(names, axis == 0 ? std::to_string(i + 1) : zone_letter(int(i)),
                  point((ends[i] + ends[i + 1]) / 2, (edge + outer) / 2),
@@ -276,9 +249,9 @@ class FrameDrawing {
     }
   }
 
-  const glm::dvec2 page_;
-  const DrawingSpace space_;
-  const bool is_narrow_;
+  const glm::dvec2 page;
+  const DrawingSpace space = drawing_space(page);
+  const bool is_narrow = std::min(page.x, page.y) <= narrow_page;
 };
 
 }  // namespace
@@ -294,8 +267,22 @@ DrawingSpace drawing_space(const glm::dvec2& page) {
 
 PageLayer draw_frame(const glm::dvec2& page, const TitleBlock& block) {
   PageLayer layer{"8 frame"};
-  FrameDrawing(page).draw(layer);
-  draw_title_block(block, drawing_space(page).block, layer);
+  FrameDrawing{page}.draw(layer);
+  BlockDrawing drawing(drawing_space(page).block);
+  drawing.add({"Legal owner", {0, 0}, {69, 18}, 3.5, 2}, block.owner);
+  drawing.add({"Scale", {0, 18}, {45, 27}, 2.5, 1}, block.scale);
+  drawing.add({"Unit", {0, 27}, {22.5, 36}, 2.5, 1}, block.unit);
+  drawing.add({"Paper", {22.5, 27}, {45, 36}, 2.5, 1}, block.paper);
+  drawing.add_symbol({"Projection", {45, 18}, {69, 36}, 3.5, 1}, block.projection);
+  drawing.add({"Created by", {69, 0}, {129, 9}, 2.5, 1}, block.author);
+  drawing.add({"Approved by", {69, 9}, {129, 18}, 2.5, 1}, "");  // signed by hand
+  drawing.add({"Title", {69, 18}, {129, 36}, 5, 2}, block.title);
+  drawing.add({"Document type", {129, 0}, {180, 9}, 2.5, 1}, "Technical drawing");
+  drawing.add({"Number", {129, 9}, {180, 27}, 5, 1}, block.number);
+  drawing.add({"Date of issue", {129, 27}, {159, 36}, 2.5, 1}, block.date);
+  drawing.add({"Sheet", {159, 27}, {180, 36}, 2.5, 1},
+              std::to_string(block.sheet) + "/" + std::to_string(block.sheets));
+  drawing.finish(layer);
   return layer;
 }
 

@@ -4,11 +4,9 @@
 //    before  anchor  behind   gap   before  anchor  behind
 //    |---------+--------|           |-----------+------|        one line of cells, along one axis
 //
-// A line of cells is as wide as the greatest extent of its views before the anchor plus the greatest extent behind it,
-// both times the scale, plus room for annotations, which does not scale. So a division gives the largest scale for an
-// area. Candidate pages are tried in order of preference. Next to a title block, whether a layout fits depends on its
-// place. The largest scale is then found by bisection, because a layout that fits at a scale fits at every smaller
-// scale.
+// A line of cells is as wide as its widest view before the anchor and its widest behind it, both times the scale, plus
+// room for annotations, which does not scale. So the largest scale for an area is a division. Next to a title block,
+// where it depends on the layout's place, it is found by bisection.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -28,12 +26,6 @@ constexpr PaperKind paper_kinds[] = {
     {"a0", 841, 1189}, {"a1", 594, 841}, {"a2", 420, 594},         {"a3", 297, 420},        {"a4", 210, 297},
     {"a5", 148, 210},  {"a6", 105, 148}, {"letter", 215.9, 279.4}, {"legal", 215.9, 355.6}, {"tabloid", 279.4, 431.8}};
 
-std::string in_small_letters(std::string_view text) {
-  std::string small(text);
-  for (char& c : small) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-  return small;
-}
-
 /// Removes `ending` if the text has it. \returns whether it did.
 bool take_ending(std::string& text, std::string_view ending) {
   if (text.size() <= ending.size() || text.compare(text.size() - ending.size(), ending.size(), ending) != 0)
@@ -45,19 +37,17 @@ bool take_ending(std::string& text, std::string_view ending) {
 }  // namespace
 
 Paper named_paper(std::string_view name) {
-  std::string rest = in_small_letters(name);
+  std::string rest(name);
+  for (char& c : rest) c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
   const bool landscape = take_ending(rest, "-landscape"), portrait = take_ending(rest, "-portrait");
   for (const PaperKind& kind : paper_kinds) {
     if (kind.name != rest) continue;
-    Paper paper;
-    paper.size = landscape ? glm::dvec2(kind.height, kind.width) : glm::dvec2(kind.width, kind.height);
-    paper.may_turn = !landscape && !portrait;
-    return paper;
+    return {landscape ? glm::dvec2(kind.height, kind.width) : glm::dvec2(kind.width, kind.height),
+            !landscape && !portrait};
   }
-  throw Error(ErrorCode::bad_argument,
-              "'" + std::string(name) +
-                  "' is no paper size: a0 to a6, letter, legal or tabloid, perhaps with -portrait "
-                  "or -landscape");
+  throw Error(ErrorCode::bad_argument, "'" + std::string(name) +
+                                           "' is no paper size: a0 to a6, letter, legal or tabloid, perhaps with "
+                                           "-portrait or -landscape");
 }
 
 std::string paper_name(const glm::dvec2& size) {
@@ -107,8 +97,7 @@ Area area_on(const glm::dvec2& page, const SheetOptions& options) {
   return {page, space.low + options.margin, space.high - options.margin, space.block - options.margin};
 }
 
-/// The upper left corner of a layout in the area. The layout is centred if that fits, else centred in the part above or
-/// beside the block, else as far from the block as possible. None if the layout does not fit.
+/// The corner of a layout that fits: centred, or centred above or beside the block, or as far from it as possible.
 std::optional<glm::dvec2> corner_in(const Area& area, const SheetLayout& layout, double scale) {
   const glm::dvec2 size = layout.size(scale);
   const auto middle_of = [&](const glm::dvec2& high) { return area.low + (high - area.low - size) * 0.5; };
@@ -177,10 +166,8 @@ std::vector<glm::dvec2> pages_of(const Paper& paper, const SheetOptions& options
   if (!options.title_block) return pages;
   // ISO 5457: A4 is upright, and all larger pages are landscape.
   if (paper.may_turn && paper.size.x > upright_width) std::swap(pages[0], pages[1]);
-  const auto is_small = [](const glm::dvec2& page) {
-    return page.x < least_framed_page.x || page.y < least_framed_page.y;
-  };
-  pages.erase(std::remove_if(pages.begin(), pages.end(), is_small), pages.end());
+  std::erase_if(pages,
+                [](const glm::dvec2& page) { return page.x < least_framed_page.x || page.y < least_framed_page.y; });
   if (pages.empty())
     refuse_page("page", size_text(paper.size) + " mm have no room for a frame and its title block, which need " +
                             size_text(least_framed_page));

@@ -19,10 +19,9 @@
 namespace frontmost {
 namespace {
 
-/// The strokes of a letter, as the path of the pen's centre in tenths of the height of capitals: x to the right from
-/// the letter's left side, y up from the baseline. Capitals end at 9 and small letters at 6. Points "x,y" are joined in
-/// order; ";" separates strokes. Each ( before a point turns the way to that point by an eighth of a circle to the
-/// left, and each ) to the right: "5,6 ((((0,6" is the upper half of a circle.
+/// Strokes are the path of the pen's centre in tenths of the lettering's height, x to the right from the letter's left,
+/// y up from the baseline. Points "x,y" are joined in order; ";" separates strokes. Before a point, each ( turns the
+/// way to it by an eighth of a circle to the left, and each ) to the right.
 struct Glyph {
   char32_t code;
   double width;  ///< width of the glyph; its strokes stay within [0, width]
@@ -209,7 +208,7 @@ constexpr Glyph glyphs[] = {
 constexpr Glyph missing{0, 5, "0,0 0,9 5,9 5,0 0,0"};
 
 struct Mark {
-  const char* strokes;
+  const char* strokes;  ///< about x = 0, above a small letter or below the baseline
   bool is_below;
   std::u32string_view letters;  ///< base and composite, one after the other
 };
@@ -231,28 +230,6 @@ constexpr Mark marks[] = {
     {"0.6,0 ((((0.6,-2 1.2,-2", true, U"AĄaąEĘeęIĮiįUŲuų"},
     {"0.3,-0.9 0.3,-1.3 -0.3,-2.6", true, U"SȘsșTȚtțGĢKĶkķLĻlļNŅnņRŖrŗ"},
 };
-
-/// A letter composed of another letter and a mark.
-struct Composite {
-  char32_t base;     ///< without its own mark: the dotless i for i
-  const char* mark;  ///< strokes about x = 0, above a small letter or below the baseline
-  bool is_below;
-};
-
-/// The letter, or null if there is none.
-const Glyph* find_glyph(char32_t code) {
-  const Glyph* const found = std::lower_bound(std::begin(glyphs), std::end(glyphs), code,
-                                              [](const Glyph& glyph, char32_t c) { return glyph.code < c; });
-  return found != std::end(glyphs) && found->code == code ? found : nullptr;
-}
-
-/// The composition of `code`; its mark is null if there is none.
-Composite find_composite(char32_t code) {
-  for (const Mark& mark : marks)
-    for (std::size_t i = 1; i < mark.letters.size(); i += 2)
-      if (mark.letters[i] == code) return {mark.letters[i - 1], mark.strokes, mark.is_below};
-  return {0, nullptr, false};
-}
 
 constexpr double gap = 3;       // between the middles of strokes, which leaves two pen widths, as in ISO 3098-1
 constexpr double rise = 3;      // height by which a mark is raised above a tall letter
@@ -287,29 +264,30 @@ void for_each_point(const char* strokes, const Visit& visit) {
   }
 }
 
-/// A character to be drawn: a letter, possibly with a mark.
+/// A character to be drawn: a letter (a box if there is none), possibly with a mark.
 struct Character {
-  const Glyph* glyph = nullptr;
-  const char* mark = nullptr;
-  glm::dvec2 mark_at{0};
-  double indent = 0, width = 0;  ///< `indent`: the letter's offset within the common width
+  const Glyph* glyph;
+  const char* mark;  ///< null if there is none
+  glm::dvec2 mark_at;
+  double indent, width;  ///< `indent`: the letter's offset within the common width
 };
 
 Character character_of(char32_t code) {
-  Character character;
-  const Composite composite = find_composite(code);
-  character.glyph = find_glyph(composite.mark ? composite.base : code);
-  if (!character.glyph) character.glyph = &missing;
-  character.width = character.glyph->width;
-  if (!composite.mark) return character;
-  character.mark = composite.mark;
-  double half = 0, top = composite.base < U'a' ? capital : 0;
-  for_each_point(composite.mark, [&](const glm::dvec2& p, double, bool) { half = std::max(half, std::abs(p.x)); });
-  for_each_point(character.glyph->strokes, [&](const glm::dvec2& p, double, bool) { top = std::max(top, p.y); });
-  character.width = std::max(character.width, 2 * half);
-  character.indent = (character.width - character.glyph->width) / 2;
-  character.mark_at = {character.width / 2, !composite.is_below && top > tall ? rise : 0};
-  return character;
+  const Mark* mark = nullptr;
+  char32_t base = code;
+  for (const Mark& each : marks)
+    for (std::size_t i = 1; i < each.letters.size() && !mark; i += 2)
+      if (each.letters[i] == code) mark = &each, base = each.letters[i - 1];
+  const Glyph* const found = std::lower_bound(std::begin(glyphs), std::end(glyphs), base,
+                                              [](const Glyph& g, char32_t c) { return g.code < c; });
+  const Glyph* const glyph = found != std::end(glyphs) && found->code == base ? found : &missing;
+  if (!mark) return {glyph, nullptr, {}, 0, glyph->width};
+  double half = 0, top = base < U'a' ? capital : 0;
+  for_each_point(mark->strokes, [&](const glm::dvec2& p, double, bool) { half = std::max(half, std::abs(p.x)); });
+  for_each_point(glyph->strokes, [&](const glm::dvec2& p, double, bool) { top = std::max(top, p.y); });
+  const double width = std::max(glyph->width, 2 * half);
+  const glm::dvec2 mark_at(width / 2, !mark->is_below && top > tall ? rise : 0);
+  return {glyph, mark->strokes, mark_at, (width - glyph->width) / 2, width};
 }
 
 /// Calls visit(character, left side) for every character of a text. \returns the end of the last character; negative if
@@ -343,11 +321,10 @@ void add_text(PageGroup& group, std::string_view text, const glm::dvec2& at, con
   group.bulges.resize(group.points.size());
   const auto draw = [&](const char* strokes, const glm::dvec2& place) {
     for_each_point(strokes, [&](const glm::dvec2& p, double bulge, bool begins) {
-      if (begins) {
+      if (begins)
         group.paths.push_back({std::uint32_t(group.points.size()), 0, false});
-      } else {
+      else
         group.bulges.back() = bulge;
-      }
       const glm::dvec2 q = p + place + shift;
       group.points.push_back(at + along * q.x + glm::dvec2(along.y, -along.x) * q.y);
       group.bulges.push_back(0);

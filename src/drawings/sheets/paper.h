@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The paper of a sheet: marks besides the lines of the model, the frame with its title block, and the layout of the
-// views in columns and rows around the front view.
+// The paper of a sheet: the frame with its title block, and the layout of the views in columns and rows around the
+// front view. All marks are pen strokes, so plotters and DXF have them, too.
 //
 //               column -1   0     1             third-angle projection: the view from a side is on that side
 //    row -1                 top   iso           first-angle projection: on the opposite side
 //    row  0     left     front  right  back
 //    row  1              bottom
-//
-// Views in line share an axis: anchors of a row have the same height, so an edge has the same height in all views of
-// the row. Marks are pen strokes like the lines of the model, so plotters and DXF have them, too.
 #pragma once
 
 #include <string>
@@ -19,13 +16,13 @@
 
 namespace frontmost::detail {
 
-/// A rectangle of the page, in millimetres.
-struct PageBox {
-  glm::dvec2 low{0}, high{0};
-};
+/// Letters that do not look like digits.
+inline constexpr std::string_view clear_letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";
 
-/// Adds an arrowhead, three pen widths wide and `length` millimetres long. It consists of two slender triangles side by
-/// side, whose sides are so near each other that the pen fills them, in every format and on a plotter.
+/// A rectangle of the page, in millimetres.
+using PageBox = DrawingBounds;
+
+/// An arrowhead, three pen widths wide and `length` millimetres long: two triangles so slender that the pen fills them.
 inline void add_arrowhead(PageGroup& group, const glm::dvec2& tip, const glm::dvec2& pointing, double length) {
   const double width = group.pen.width;
   const glm::dvec2 base = tip - length * pointing, across(-pointing.y * width, pointing.x * width);
@@ -45,8 +42,7 @@ inline void add_arrowhead(PageGroup& group, const glm::dvec2& tip, const glm::dv
 /// The space for views: the rectangle from `low` to `high` without the title block in its lower right corner.
 struct DrawingSpace {
   glm::dvec2 low{0}, high{0};
-  /// The title block's upper left corner, in millimetres of the page. Its lower right corner is `high`.
-  glm::dvec2 block{0};
+  glm::dvec2 block{0};  ///< upper left corner of the title block
 };
 
 /// The smallest page with room for a frame, in millimetres.
@@ -57,13 +53,12 @@ inline constexpr glm::dvec2 least_framed_page{210, 100};
 [[nodiscard]] DrawingSpace drawing_space(const glm::dvec2& page);
 
 /// The layer "8 frame" for a page of that size: frame (0.7 mm), zones of 50 mm from the middle with letters and
-/// numbers, centring marks, trimming marks, title block and its text. If a side of the page is at most 210 mm, zones
-/// are only above and on the right. All marks are pen lines, so plotters and DXF have them, too. \throws Error as
-/// drawing_space() does.
+/// numbers, centring marks, trimming marks, title block and its text. Zones are only above and on the right if a side
+/// is at most 210 mm. \throws Error as drawing_space() does.
 [[nodiscard]] PageLayer draw_frame(const glm::dvec2& page, const TitleBlock& block);
 
-/// The extent of a view around its anchor, in millimetres at scale 1:1, y down, and the view's cell. Views in line
-/// share a row or a column. Anchors of a row have the same height, anchors of a column the same x.
+/// The extent of a view around its anchor, in millimetres at scale 1:1, y down, and its cell. Anchors of a row have the
+/// same height, those of a column the same x.
 struct ViewCell {
   glm::dvec2 low{0}, high{0};
   int column = 0, row = 0;
@@ -71,8 +66,7 @@ struct ViewCell {
   glm::dvec2 room_before{0}, room_behind{0};
 };
 
-/// The cell of a named view relative to the front view. The view from the left is on the right in first-angle
-/// projection, and on the left in third-angle projection.
+/// The cell of a named view relative to the front view.
 [[nodiscard]] glm::ivec2 cell_of(NamedView view, ProjectionMethod method);
 
 /// Arranges views in columns and rows, each as wide as its widest view.
@@ -90,11 +84,10 @@ class SheetLayout {
   [[nodiscard]] const glm::dvec2& gap() const { return gap_; }
   /// The number of columns and rows in use.
   [[nodiscard]] glm::dvec2 counts() const { return {lines_[0].size(), lines_[1].size()}; }
-  /// Whether no view reaches into the corner of the page to the right of `block` and below it. `corner` is the layout's
-  /// upper left corner.
-  [[nodiscard]] bool leaves_free(const glm::dvec2& block, double scale, const glm::dvec2& corner) const;
   /// The places of the anchors. `corner` is the layout's upper left corner.
   [[nodiscard]] std::vector<glm::dvec2> anchors(double scale, const glm::dvec2& corner) const;
+  /// Whether no view reaches into the corner of the page to the right of `block` and below it.
+  [[nodiscard]] bool leaves_free(const glm::dvec2& block, double scale, const glm::dvec2& corner) const;
 
  private:
   /// A column or row in use, with its number and the extent of its views before and behind their anchors.
@@ -121,8 +114,7 @@ struct SheetPlan {
 
 /// Chooses the page, the scale and the places of the views. Views avoid the title block and are spread evenly if there
 /// is room. If a scale is given but no page, the smallest of A4 to A0 that has room is taken. `has_scale` is false in
-/// perspective.
-/// \throws Error when the drawing does not fit; the message says what would.
+/// perspective. \throws Error when the drawing does not fit; the message says what would.
 [[nodiscard]] SheetPlan plan_sheet(const SheetLayout& layout, const SheetOptions& options, bool has_scale);
 
 }  // namespace frontmost::detail

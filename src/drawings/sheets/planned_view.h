@@ -21,26 +21,19 @@ struct PlannedView : DrawnView {
   CuttingPlane plane;                    ///< cutting plane of a section
   std::string letter;                    ///< letter of a section: "A"
   double millimetres_per_pixel = 1;      ///< at scale 1:1; meaningless by itself in perspective
+  glm::dvec2 anchor{0};                  ///< pixel at the anchor of the view's cell
   std::shared_ptr<const Rounds> rounds;  ///< circles of the surfaces; null if not needed
   /// Millimetres of paper that marks of sections occupy on the left of the view and below it.
   glm::dvec2 taken{0};
 };
 
-inline constexpr std::string_view section_letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";  // letters that do not look like digits
-
 /// Surfaces that own a reference to their scene.
 [[nodiscard]] std::shared_ptr<const Surfaces> surfaces_of(std::shared_ptr<const Scene> scene,
                                                           const Execution& execution);
 
-/// The part of a scene behind a plane.
-struct CutScene {
-  std::shared_ptr<const Surfaces> surfaces;
-  std::shared_ptr<const Section> section;
-  CuttingPlane plane;
-};
-/// Cuts `surfaces` for the section that `camera` sees. \throws Error bad_argument if the plane misses the surfaces.
-[[nodiscard]] CutScene cut_for(const SectionView& wanted, const Surfaces& surfaces, const View& camera,
-                               const Execution& execution);
+/// Cuts the surfaces of a view: sets its section and plane, and its surfaces to those behind the plane.
+/// \throws Error bad_argument if the plane misses them.
+void cut_surfaces(PlannedView& view, const SectionView& wanted, const View& camera, const Execution& execution);
 
 /// Leaves a section in the cell of its direction if no other view has that cell; otherwise gives the section a column
 /// of its own.
@@ -69,8 +62,7 @@ struct SectionMarkOptions {
   double text_height = 5;              ///< millimetres, as in TextStyle
 };
 
-/// Millimetres that a cutting line takes beyond its ends (`cutting_line_room`), and beside them on the side from which
-/// the section is viewed (`section_arrow_room`).
+/// Millimetres that a cutting line takes beyond its ends, and beside them on the side from which the section is viewed.
 inline constexpr double cutting_line_room = 12, section_arrow_room = 15;
 
 struct SectionMarks {
@@ -78,9 +70,7 @@ struct SectionMarks {
   std::vector<PageBox> boxes;     ///< boxes of arrows and letters
 };
 
-/// Draws cutting lines and the names of views. A cutting line has long dashes and dots, and thick ends 3 to 9 mm beyond
-/// the cut part. Each end has an arrow, with the letter behind the arrow. All marks are pen strokes, so plotters have
-/// them, too.
+/// Draws cutting lines with thick ends 3 to 9 mm beyond the cut part, and the names of views.
 [[nodiscard]] SectionMarks draw_section_marks(std::span<const CuttingLine> lines, std::span<const ViewName> names,
                                               const SectionMarkOptions& options = {});
 

@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Views along other axes see the plane of a section edge-on. The first of these views gets the cutting line, even if it
-// is another section. The section takes the cell of the view with the same direction, if that cell is free, and
-// otherwise a column of its own to the right of all views.
+// The first view or other section that sees the plane of a section edge-on gets its cutting line.
 //
 //    A               A          A cutting line is thin, with long dashes and dots, and has thick ends beyond the cut
 //    |               |          part. Arrows at the ends point in the section's view direction, with its letter behind
 //    v               v          them.
 //    ===- - - . - ===
 #include <algorithm>
+#include <array>
 #include <cmath>
 
-#include "frontmost/sheets.h"
 #include "rounds/found_rounds.h"
-#include "sheets/paper.h"
 #include "sheets/planned_view.h"
 
 namespace frontmost::detail {
@@ -28,14 +25,6 @@ constexpr int first_own_column = 3;                      // to the right of all 
   throw Error(ErrorCode::bad_argument,
               "sections " + std::string(view_name(wanted.direction)) + (wanted.at ? "=" + number_text(*wanted.at) : ""),
               reason);
-}
-
-/// The axis whose direction is nearest to `direction`.
-Axis axis_towards(const glm::dvec3& direction) {
-  int axis = 0;
-  for (int k = 1; k < 3; ++k)
-    if (std::abs(direction[k]) > std::abs(direction[axis])) axis = k;
-  return Axis(direction[axis] > 0 ? axis : axis + 3);
 }
 
 /// For each section, the index of the view that marks its cutting plane: the first view, or other section, that sees
@@ -92,21 +81,22 @@ std::shared_ptr<const Surfaces> surfaces_of(std::shared_ptr<const Scene> scene, 
   return {owner, &owner->surfaces};
 }
 
-CutScene cut_for(const SectionView& wanted, const Surfaces& surfaces, const View& camera, const Execution& execution) {
-  CutScene result;
-  result.plane.towards = axis_towards(-camera.forward());
-  const int axis = int(result.plane.towards) % 3;
-  const Box& box = surfaces.bounds();
-  const double origin = surfaces.scene().origin[axis], low = box.low[axis], high = box.high[axis];
-  result.plane.at = wanted.at ? *wanted.at - origin : (low + high) / 2;
-  result.section = std::make_shared<const Section>(cut(surfaces, result.plane, execution));
-  if (result.section->faces.empty()) {
+void cut_surfaces(PlannedView& view, const SectionView& wanted, const View& camera, const Execution& execution) {
+  const glm::dvec3 towards = -camera.forward();
+  int axis = 0;  // the one that is nearest to this direction
+  for (int k = 1; k < 3; ++k)
+    if (std::abs(towards[k]) > std::abs(towards[axis])) axis = k;
+  view.plane.towards = Axis(towards[axis] > 0 ? axis : axis + 3);
+  const Box& box = view.surfaces->bounds();
+  const double origin = view.surfaces->scene().origin[axis], low = box.low[axis], high = box.high[axis];
+  view.plane.at = wanted.at ? *wanted.at - origin : (low + high) / 2;
+  view.section = std::make_shared<const Section>(cut(*view.surfaces, view.plane, execution));
+  if (view.section->faces.empty()) {
     if (!(low <= high)) refuse_section(wanted, "the model has no surface to cut");
     refuse_section(wanted, "the plane misses the model, which lies from " + std::string(1, "xyz"[axis]) + " = " +
                                number_text(low + origin) + " to " + number_text(high + origin));
   }
-  result.surfaces = surfaces_of({result.section, &result.section->scene}, execution);
-  return result;
+  view.surfaces = surfaces_of({view.section, &view.section->scene}, execution);
 }
 
 void place_sections(std::vector<ViewCell>& cells, const std::vector<PlannedView>& views) {
@@ -145,9 +135,9 @@ void keep_section_room(std::vector<ViewCell>& cells, std::vector<PlannedView>& v
     const bool reaches_out = rest < size / 4;
     double& side = is_behind ? cell.room_behind[across] : cell.room_before[across];
     if (reaches_out) side = std::max(side, section_arrow_room);
-    const bool is_left = along == 0 || (reaches_out && !is_behind), is_below = along == 1 || (reaches_out && is_behind);
-    if (is_left) host.taken.x = std::max(host.taken.x, along == 0 ? cutting_line_room : section_arrow_room);
-    if (is_below) host.taken.y = std::max(host.taken.y, along == 1 ? cutting_line_room : section_arrow_room);
+    host.taken[along] = std::max(host.taken[along], cutting_line_room);
+    const bool is_left_or_below = is_behind == (across == 1);
+    if (reaches_out && is_left_or_below) host.taken[across] = std::max(host.taken[across], section_arrow_room);
   }
 }
 
@@ -169,16 +159,11 @@ void hatch_sections(std::vector<PlannedView>& views, const SheetOptions& options
     if (!view.section) continue;
     const double millimetres = view.placed.millimetres_per_pixel;
     const View& camera = view.drawing.view;
-    SectionHatching lines;
-    lines.spacing = std::clamp(spacing / millimetres, 2.0, 5e4);
-    lines.solid_spacing = std::clamp(0.8 * pen / millimetres, 0.5, 1e5);
     const double pixel = (camera.projection.right - camera.projection.left) / camera.width;
-    lines.thinnest = thinnest / millimetres * pixel;
-    HatchOptions hatching;
-    hatching.sets = section_hatch_sets(*view.section, styles, lines);
-    hatching.tone = section_tone(view.plane);
-    hatching.by_instance = !options.plot;
-    hatching.nearest_first = options.plot;
+    const SectionHatching lines{std::clamp(spacing / millimetres, 2.0, 5e4),
+                                std::clamp(0.8 * pen / millimetres, 0.5, 1e5), thinnest / millimetres * pixel};
+    const HatchOptions hatching{section_hatch_sets(*view.section, styles, lines), section_tone(view.plane), 0,
+                                !options.plot, options.plot};
     view.placed.hatching = hatch(*view.surfaces, camera, hatching, execution);
   }
 }
@@ -197,8 +182,7 @@ SectionMarks draw_section_marks(std::span<const CuttingLine> lines, std::span<co
     const glm::dvec2 thick_end[] = {end + gap_before * outwards, end + (gap_before + thick_length) * outwards};
     thick.add(thick_end, false);
     const glm::dvec2 tip = end + arrow_place * outwards, tail = tip - arrow_length * line.looking;
-    const glm::dvec2 shaft[] = {tail, tip};
-    heads.add(shaft, false);
+    heads.add(std::array{tail, tip}, false);
     add_arrowhead(heads, tip, line.looking, head_length);
     const double half = height / 2;
     const glm::dvec2 letter = tail - (letter_distance + half) * line.looking;
@@ -213,8 +197,7 @@ SectionMarks draw_section_marks(std::span<const CuttingLine> lines, std::span<co
   for (const CuttingLine& line : lines) {
     if (!(glm::distance(line.from, line.to) > 0)) throw Error(ErrorCode::bad_argument, "a cutting line has no length");
     const glm::dvec2 along = glm::normalize(line.to - line.from);
-    const glm::dvec2 ends[] = {line.from - gap_before * along, line.to + gap_before * along};
-    thin.add(ends, false);
+    thin.add(std::array{line.from - gap_before * along, line.to + gap_before * along}, false);
     draw_end(line, line.from, -along);
     draw_end(line, line.to, along);
   }
@@ -246,10 +229,7 @@ SectionMarks section_marks_of(const std::vector<PlannedView>& views, const Pen& 
     if (is_empty(trace)) continue;
     lines.push_back({host.placed.on_page(trace.from), host.placed.on_page(trace.to), trace.looking, views[i].letter});
   }
-  SectionMarkOptions options;
-  options.thin = thin;
-  options.text_height = name_height;
-  return draw_section_marks(lines, names, options);
+  return draw_section_marks(lines, names, {thin, name_height});
 }
 
 }  // namespace frontmost::detail

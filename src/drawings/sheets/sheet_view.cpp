@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines of views as layers of a page. Each kind of line has a layer, in drawing order, so that visible lines are
-// above hidden ones. Layer names begin with the number of a plotter's pen. Within a layer, each object of each view is
-// a group.
+// Each kind of line has a layer of the page, in drawing order. Within a layer, each object of each view is a group.
 //
 //    dashes on a line     |=====  ==  =====  ==  =====|      it begins and ends with a whole long dash; long dashes are
 //                                                            stretched to fit the length
@@ -55,7 +53,10 @@ class SheetLayers {
       const glm::dvec2 ends[] = {view.on_page(line.from), view.on_page(line.to)};
       Pen pen = pens_.centre;
       pen.dashes = dashes_on(pen, glm::distance(ends[0], ends[1]));
-      centre_group(pen).add(ends, false);
+      std::vector<PageGroup>& groups = layers_[centre].groups;
+      const auto [known, is_new] = centre_groups_.try_emplace(pen.dashes, groups.size());
+      if (is_new) groups.push_back({"", pen});
+      groups[known->second].add(ends, false);
     }
     for (const Stroke& stroke : view.strokes.strokes) append(stroke, view, group_for(stroke, view, number));
   }
@@ -91,13 +92,6 @@ class SheetLayers {
     std::vector<PageGroup>& groups = layers_[key.layer].groups;
     const auto [known, is_new] = places_.try_emplace(key, groups.size());
     if (is_new) groups.push_back({name_of(view, key.instance), pen});
-    return groups[known->second];
-  }
-
-  PageGroup& centre_group(const Pen& pen) {
-    std::vector<PageGroup>& groups = layers_[centre].groups;
-    const auto [known, is_new] = centre_groups_.try_emplace(pen.dashes, groups.size());
-    if (is_new) groups.push_back({"", pen});
     return groups[known->second];
   }
 

@@ -6,9 +6,8 @@
 //                          |                 best_cut --> two halves ---> waiting
 //                          +------------------------------------------------+
 //
-// Waiting pieces are taken before new polygons, and the newest piece first, so that few pieces wait at a time. Samples
-// of many pieces are shaded together. A tree of cuts keeps the order of the halves, so the order in which pieces are
-// written does not depend on the order in which they are shaded.
+// The piece that was cut last is taken first, so that few wait. Samples of many pieces are shaded together. A list
+// keeps the order of the halves, so the order of writing does not depend on that of shading.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -19,6 +18,7 @@
 #include "base/srgb.h"
 #include "figures/colored_order.h"
 #include "figures/coloring/pieces.h"
+#include "painter/seen/screen_polygons.h"
 #include "shade/colorists.h"
 #include "shade/fragment_shader.h"
 #include "shade/prepared_scene.h"
@@ -39,7 +39,6 @@ const TriangleStore& smoothed(PreparedScene& scene, const BitSet& large, const E
   return scene.triangles;
 }
 
-/// The lighting of lit figures; empty for others.
 Lighting lighting_of(PreparedScene& scene, const ShadeInput& input, const ShadeOptions& options,
                      const Execution& execution) {
   check_light(options.light);
@@ -50,60 +49,47 @@ Lighting lighting_of(PreparedScene& scene, const ShadeInput& input, const ShadeO
                       scene.environment(options.light, execution));
 }
 
-Lit lit_at_points(PreparedScene& scene, const ShadeInput& input, const ShadeOptions& options, const Lighting& lighting,
-                  const Execution& execution) {
-  Lit lit = lit_by(lighting, {input, options, kAtPoint}, scene, execution);
-  lit.occlusion = scene.find_occlusion(input, options, execution);
-  scene.shadows.ask_at_points();
-  return lit;
-}
-
 /// The triangles of a figure.
 struct FigureTriangles {
   BitSet seen;   ///< all triangles of the figure
   BitSet large;  ///< triangles that need a smooth normal if the model has none
 };
 
-/// Prepares a scene for shading points. Several threads may use it at once, each with its own FragmentShader.
-class PointShader {
- public:
+struct PointShader {
   /// Borrows all arguments but the options, and prepares whatever the scene lacks. \throws Error as check_opacity()
   /// does.
   PointShader(PreparedScene& scene, const ShadeInput& input, const FigureTriangles& triangles,
               const ShadeOptions& options, const Execution& execution)
-      : source_(smoothed(scene, triangles.large, execution), input.first().view, &triangles.large),
-        lighting_(lighting_of(scene, input, options, execution)),
-        opacity_(shows_materials(options.shading) ? options.opacity : 1.0f) {
+      : source(smoothed(scene, triangles.large, execution), input.first().view, &triangles.large),
+        lighting(lighting_of(scene, input, options, execution)),
+        opacity(shows_materials(options.shading) ? options.opacity : 1.0f) {
     check_opacity(options);
     check_ambient_occlusion(options);
     scene.make_materials_ready(triangles.seen, execution);
-    if (options.shading == Shading::lit)
-      colorist_ = lit_at_points(scene, input, options, lighting_, execution);
-    else if (options.shading == Shading::depth)
-      colorist_ = depth_colorist(depth_range(input.first(), execution), glm::vec3(input.first().view.forward()));
-    else
-      colorist_ = unlit_colorist(options.shading, scene.materials, execution.isa);
+    if (options.shading == Shading::lit) {
+      Lit lit = lit_by(lighting, {input, options, kAtPoint}, scene, execution);
+      lit.occlusion = scene.find_occlusion(input, options, execution);
+      scene.shadows.ask_at_points();
+      colorist = std::move(lit);
+    } else if (options.shading == Shading::depth) {
+      colorist = depth_colorist(depth_range(input.first(), execution), glm::vec3(input.first().view.forward()));
+    } else {
+      colorist = unlit_colorist(options.shading, scene.materials, execution.isa);
+    }
   }
 
-  [[nodiscard]] const TriangleSource& source() const { return source_; }
-  [[nodiscard]] const FragmentShader::Colorist& colorist() const { return colorist_; }
-  [[nodiscard]] float opacity() const { return opacity_; }
-
- private:
-  const TriangleSource source_;
-  const Lighting lighting_;
-  FragmentShader::Colorist colorist_;
-  const float opacity_;
+  const TriangleSource source;
+  const Lighting lighting;
+  FragmentShader::Colorist colorist;
+  const float opacity;
 };
 
 /// In pixels: the least width of a cut piece, and the distance from a cut below which no samples are taken. Textures
 /// and shadows are filtered over about this distance, so colours this close to a cut belong to neither side.
 constexpr double kLeastWidth = 0.25, kBesideCut = 0.35;
-/// If pieces are grouped, the share of the tolerance for differences within a piece. The rest is for differences
-/// between the pieces of a group.
+/// The share of the tolerance for differences within a piece, where pieces are grouped; the rest is for the group.
 constexpr double kWithin = 2.0 / 3;
-/// The factor by which the tolerance is larger for pieces narrower than a pixel. They are hardly visible, and there are
-/// many of them where textures are cut.
+/// The factor of the tolerance for pieces narrower than a pixel, which are hardly visible.
 constexpr double kOfSlivers = 8;
 /// The number of samples that are shaded together: they fill several batches of the shader, but stay in the cache.
 constexpr std::size_t kSamplesAtOnce = 2048;
@@ -128,7 +114,7 @@ class PolygonColors {
   PolygonColors(const Surfaces& surfaces, const View& view, const PointShader& shader, const FigureOptions& options,
                 const Execution& execution)
       : surfaces_(surfaces), shading_(shader), options_(options), execution_(execution), rays_(view) {
-    shader_.begin(shader.source(), shader.colorist(), execution.isa);
+    shader_.begin(shader.source, shader.colorist, execution.isa);
   }
 
   /// Appends the pieces of `polygons`, some of the polygons of `parts`, without holes and fully transparent pieces. The
@@ -143,18 +129,28 @@ class PolygonColors {
       shade_samples();
       for (Piece& piece : looked_at_) divide(piece);
     }
-    for (const Polygon& polygon : polygons_) emit(polygon, into);
+    for (const Polygon& polygon : polygons_) {
+      listed_.clear();
+      for (std::uint32_t i = polygon.first_slot; i != no_index; i = slots_[i].next)
+        if (slots_[i].kept != no_index) listed_.push_back(&kept_[slots_[i].kept]);
+      for (std::uint32_t i = 0; i < listed_.size(); ++i) listed_[i]->group = i;
+      if (polygon.is_grouped) group_listed();
+      for (std::size_t i = 0; i < listed_.size(); ++i) {
+        const Kept& piece = *listed_[i];
+        if (i == 0 || listed_[i - 1]->group != piece.group) into.begin_shape(rounded(piece.color));
+        into.add_polygon(polygon.outline.id, piece.corners);
+      }
+    }
   }
 
  private:
-  /// A piece that is still to be judged.
   struct Piece {
     std::vector<glm::dvec2> corners;
     std::vector<ColorSample> samples;  ///< includes samples of the piece from which it was cut
     std::size_t known_samples = 0;
-    bool is_sliver = false;        ///< the whole piece lies close to cuts
-    std::uint32_t polygon = 0;     ///< index of its polygon
-    std::uint32_t node = 0;        ///< node in the tree of cuts
+    bool is_sliver = false;     ///< the whole piece lies close to cuts
+    std::uint32_t polygon = 0;  ///< index of its polygon
+    std::uint32_t slot = 0;
     std::uint32_t cut = no_index;  ///< the last cut that made it
   };
   /// A cut, linked to the cut before it. A piece lies on one side of each of its cuts.
@@ -162,10 +158,9 @@ class PolygonColors {
     ScreenLine line;
     std::uint32_t before = no_index;
   };
-  /// A piece that was cut, or a piece that is kept. The order of the tree is the painting order.
-  struct Node {
-    std::uint32_t below = no_index, above = no_index;  ///< nodes
-    std::uint32_t kept = no_index;
+  /// The place of a piece in its polygon's list, which is in painting order.
+  struct Slot {
+    std::uint32_t next = no_index, kept = no_index;
   };
   struct Kept {
     glm::vec4 color;
@@ -175,7 +170,7 @@ class PolygonColors {
   struct Polygon {
     PaintPolygon outline;
     bool is_grouped = false;  ///< pieces of one colour become one shape
-    std::uint32_t node = 0;
+    std::uint32_t first_slot = 0;
     std::optional<ScreenCutout> holes{};
     std::optional<std::vector<TexcoordLines>> texture_lines{};  ///< made when first needed
   };
@@ -184,7 +179,7 @@ class PolygonColors {
     // polygons.
     shader_.clear();
     polygons_.clear();
-    nodes_.clear();
+    slots_.clear();
     cuts_.clear();
     kept_.clear();
     started_ = 0;
@@ -192,20 +187,20 @@ class PolygonColors {
     for (const PaintPolygon& outline : polygons) {
       Polygon& polygon = polygons_.emplace_back(Polygon{outline});
       if (cutouts && cutouts->has(outline.id)) polygon.holes.emplace((*cutouts)[outline.id], rays_);
-      polygon.is_grouped = options_.merges_neighbours || shading_.opacity() < 1 || !is_opaque(surfaces_, outline.id);
+      polygon.is_grouped = options_.merges_neighbours || shading_.opacity < 1 || !is_opaque(surfaces_, outline.id);
     }
   }
 
   void start(const VisibleParts& parts, std::uint32_t number) {
     Polygon& polygon = polygons_[number];
-    polygon.node = std::uint32_t(nodes_.size());
-    nodes_.emplace_back();
+    polygon.first_slot = std::uint32_t(slots_.size());
+    slots_.emplace_back();
     const PaintCorner* const first = parts.corners.data() + polygon.outline.first_corner;
     Piece& piece = looked_at_.emplace_back();
     piece.corners.reserve(polygon.outline.corner_count);
     for (std::size_t i = 0; i < polygon.outline.corner_count; ++i) piece.corners.push_back(glm::dvec2(first[i].at));
     piece.polygon = number;
-    piece.node = polygon.node;
+    piece.slot = polygon.first_slot;
   }
 
   /// Takes pieces until their samples fill several batches. The pieces that were cut last are taken first.
@@ -225,9 +220,8 @@ class PolygonColors {
     }
   }
 
-  /// Chooses the places of new samples. Whole polygons are also sampled at their corners; the corners of cut pieces
-  /// were sampled before, or lie beside a cut. Known samples count, so a piece gets fewer new samples than its size
-  /// suggests, often none.
+  /// Whole polygons are also sampled at their corners; corners of other pieces are known or lie beside a cut. Known
+  /// samples count, so a piece often gets no new ones.
   void place_samples(Piece& piece) {
     const PieceSize size(piece.corners);
     const auto add = [&](const glm::dvec2& at) {
@@ -253,7 +247,7 @@ class PolygonColors {
         // Paper shows nothing brighter than white, so brighter reflections become white and more opaque.
         const float brightest = std::max(1.0f, std::max(light.x, std::max(light.y, light.z)));
         const glm::vec3 shown = light / brightest;
-        const float opacity = std::clamp(shaded.alpha * brightest * shading_.opacity(), 0.0f, 1.0f);
+        const float opacity = std::clamp(shaded.alpha * brightest * shading_.opacity, 0.0f, 1.0f);
         asked_[shaded.number]->color = {float(srgb8_of_linear(shown.x)), float(srgb8_of_linear(shown.y)),
                                         float(srgb8_of_linear(shown.z)), opacity * 255.0f};
       });
@@ -283,7 +277,7 @@ class PolygonColors {
         return cut(piece, *line);
     }
     if (is_hole(color) || color.w < 0.5f) return;
-    nodes_[piece.node].kept = std::uint32_t(kept_.size());
+    slots_[piece.slot].kept = std::uint32_t(kept_.size());
     kept_.push_back({color, std::move(piece.corners)});
   }
 
@@ -299,9 +293,8 @@ class PolygonColors {
     return false;
   }
 
-  /// Whether a piece has one colour, and the colour. The majority of the samples decides between surface and hole. The
-  /// piece has one colour, the mean of the surface samples, if all samples are near enough to the mean. (The middle
-  /// between the extremes would tint a wide field for the sake of its edge.)
+  /// Whether a piece has one colour, and the colour: that of holes by majority, or else the mean of the surface
+  /// samples, if all are near it. The middle between extremes would tint a wide field for the sake of its edge.
   [[nodiscard]] std::pair<bool, glm::vec4> judge(const Piece& piece) const {
     std::size_t holes = 0;
     for (const ColorSample& sample : piece.samples) holes += is_hole(sample.color);
@@ -320,21 +313,18 @@ class PolygonColors {
     return {holes == 0 && is_near, mean};
   }
 
-  /// Cuts a piece along a line and puts both halves into the waiting list.
+  /// Cuts a piece along a line and puts both halves into the waiting list, the one below in painting order first.
   void cut(Piece& piece, const ScreenLine& line) {
-    const auto number = std::uint32_t(cuts_.size()), node = std::uint32_t(nodes_.size());
+    const auto number = std::uint32_t(cuts_.size()), slot = std::uint32_t(slots_.size());
     cuts_.push_back({line, piece.cut});
-    nodes_[piece.node] = {node, node + 1, no_index};
-    nodes_.resize(nodes_.size() + 2);
+    slots_.push_back({std::exchange(slots_[piece.slot].next, slot), no_index});
     Piece below, above;
     for (Piece* const side : {&below, &above}) {
       side->polygon = piece.polygon;
-      side->node = node + (side == &above);
+      side->slot = side == &above ? slot : piece.slot;
       side->cut = number;
     }
-    CutOutline corners = cut_outline(piece.corners, line);
-    below.corners = std::move(corners.below);
-    above.corners = std::move(corners.above);
+    cut_outline(piece.corners, line, below.corners, above.corners);
     for (const ColorSample& sample : piece.samples) {
       const double distance = line.distance(sample.at);
       if (std::abs(distance) >= kBesideCut) (distance > 0 ? above : below).samples.push_back(sample);
@@ -352,7 +342,7 @@ class PolygonColors {
     std::vector<TexcoordLines>& lines = polygon.texture_lines.emplace();
     std::vector<TriangleSetup> setups(1);
     const NewTriangle triangle{polygon.outline.id, 0, glm::vec2(piece.samples.front().at)};
-    shading_.source().set_up({&triangle, 1}, setups);
+    shading_.source.set_up({&triangle, 1}, setups);
     const TriangleSetup& setup = setups[0];
     const Scene& scene = surfaces_.scene();
     if (setup.material >= scene.materials.size()) return lines;
@@ -371,31 +361,8 @@ class PolygonColors {
     return lines;
   }
 
-  /// Lists the kept pieces in painting order: pieces below a cut come before pieces above it.
-  void list_kept(const Polygon& polygon) {
-    listed_.clear();
-    path_.assign(1, polygon.node);
-    while (!path_.empty()) {
-      const Node node = nodes_[path_.back()];
-      path_.pop_back();
-      if (node.kept != no_index) listed_.push_back(&kept_[node.kept]);
-      if (node.below != no_index) path_.insert(path_.end(), {node.above, node.below});
-    }
-  }
-
-  void emit(const Polygon& polygon, ColoredOrder& into) {
-    list_kept(polygon);
-    for (std::uint32_t i = 0; i < listed_.size(); ++i) listed_[i]->group = i;
-    if (polygon.is_grouped) group_kept();
-    for (std::size_t i = 0; i < listed_.size(); ++i) {
-      const Kept& piece = *listed_[i];
-      if (i == 0 || listed_[i - 1]->group != piece.group) into.begin_shape(rounded(piece.color));
-      into.add_polygon(polygon.outline.id, piece.corners);
-    }
-  }
-
   /// Replaces nearly equal colours by the first of them, so that pieces can be merged.
-  void group_kept() {
+  void group_listed() {
     ColorGroups groups(options_.tolerance * (1 - kWithin));
     for (Kept* const piece : listed_) piece->group = groups.find_or_add(piece->color);
     for (Kept* const piece : listed_) piece->color = groups.colors()[piece->group];
@@ -414,11 +381,10 @@ class PolygonColors {
   std::vector<Piece> waiting_;    ///< a stack: the next piece is last
   std::vector<Piece> looked_at_;  ///< the pieces of the current round
   std::vector<ColorSample*> asked_;
-  std::vector<Node> nodes_;
+  std::vector<Slot> slots_;
   std::vector<Cut> cuts_;
   std::vector<Kept> kept_;
   std::vector<Kept*> listed_;
-  std::vector<std::uint32_t> path_;
 };
 
 constexpr std::size_t kPolygonsPerPart = 256;
@@ -461,18 +427,6 @@ void append(const ColoredOrder& part, ColoredOrder& into) {
   into.corners.insert(into.corners.end(), part.corners.begin(), part.corners.end());
 }
 
-void reserve(const std::vector<ColoredOrder>& parts, ColoredOrder& into) {
-  std::size_t shapes = 0, polygons = 0, corners = 0;
-  for (const ColoredOrder& part : parts) {
-    shapes += part.shapes.size();
-    polygons += part.polygons.size();
-    corners += part.corners.size();
-  }
-  into.shapes.reserve(shapes);
-  into.polygons.reserve(polygons);
-  into.corners.reserve(corners);
-}
-
 }  // namespace
 
 ColoredOrder color_order(PreparedScene& scene, const ShadeInput& input, const VisibleParts& parts,
@@ -495,7 +449,9 @@ ColoredOrder color_order(PreparedScene& scene, const ShadeInput& input, const Vi
   });
   ColoredOrder colored;
   colored.view = parts.view;
-  reserve(lists, colored);
+  painter_detail::reserve_sum(colored.shapes, lists, &ColoredOrder::shapes);
+  painter_detail::reserve_sum(colored.polygons, lists, &ColoredOrder::polygons);
+  painter_detail::reserve_sum(colored.corners, lists, &ColoredOrder::corners);
   for (ColoredOrder& list : lists) {
     append(list, colored);
     list = {};

@@ -21,8 +21,6 @@ namespace {
 
 /// Up to this number of colours, all of them are tested one by one.
 constexpr std::size_t kFewColors = 64;
-/// Least side length of a cell of colours, in steps of 8 bits.
-constexpr double kLeastCell = 1.0 / 64;
 
 std::uint64_t key_of(const glm::ivec4& cell) {
   std::uint64_t key = 0;
@@ -273,8 +271,6 @@ float difference(const glm::vec4& a, const glm::vec4& b) {
   return std::max({d.x, d.y, d.z, d.w});
 }
 
-ColorGroups::ColorGroups(double reach) : reach_(reach), cell_size_(std::max(reach * 1.001, kLeastCell)) {}
-
 std::uint32_t ColorGroups::find(const glm::ivec4& cell, const glm::vec4& color) const {
   if (colors_.size() <= kFewColors) {
     const auto same = std::find_if(colors_.begin(), colors_.end(),
@@ -336,19 +332,18 @@ glm::dvec2 middle_across(std::span<const glm::dvec2> corners, const glm::dvec2& 
   return count > 0 ? sum / double(count) : at;
 }
 
-CutOutline cut_outline(std::span<const glm::dvec2> corners, const ScreenLine& line) {
-  CutOutline sides;
+void cut_outline(std::span<const glm::dvec2> corners, const ScreenLine& line, std::vector<glm::dvec2>& below,
+                 std::vector<glm::dvec2>& above) {
   const std::size_t count = corners.size();
   for (std::size_t i = 0; i < count; ++i) {
     const glm::dvec2 &from = corners[i], &to = corners[i + 1 == count ? 0 : i + 1];
     const double a = line.distance(from), b = line.distance(to);
-    (a > 0 ? sides.above : sides.below).push_back(from);
+    (a > 0 ? above : below).push_back(from);
     if ((a > 0) == (b > 0)) continue;
     const glm::dvec2 at = from + (to - from) * (a / (a - b));
-    sides.below.push_back(at);
-    sides.above.push_back(at);
+    below.push_back(at);
+    above.push_back(at);
   }
-  return sides;
 }
 
 std::optional<ScreenLine> best_cut(const ColorPiece& piece, std::span<const TexcoordLines> texture) {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Helps to cut polygons into pieces of one colour: places where a piece is sampled, the line that best separates the
-// colours of a piece, and groups of nearly equal colours.
+// Pieces of one colour: the sample places of a piece, the line that best separates its colours, and groups of colours.
 //
-//        +---------+         Samples (x dark, o light) are spread over a piece, which one straight line
-//        | x x /o o|         cuts in two. Both sides are sampled again, and cut again if necessary.
-//        | x  / o o|         A cut only divides the picture: pieces keep their polygon's place
-//        |x  /o o  |         in the painting order, so a cut never changes what hides what.
+//        +---------+      Samples (x dark, o light) are spread over a piece, which one straight line cuts in two.
+//        | x x /o o|      Pieces keep their polygon's place in the painting order, so a cut never changes what hides
+//        |x  /o o  |      what.
 //        +---------+
 #pragma once
 
@@ -155,11 +153,9 @@ void for_each_place(std::span<const glm::dvec2> corners, double area, double cou
   }
 }
 
-/// The parts of an outline below and above a line.
-struct CutOutline {
-  std::vector<glm::dvec2> below, above;
-};
-[[nodiscard]] CutOutline cut_outline(std::span<const glm::dvec2> corners, const ScreenLine& line);
+/// Appends the parts of an outline below and above a line.
+void cut_outline(std::span<const glm::dvec2> corners, const ScreenLine& line, std::vector<glm::dvec2>& below,
+                 std::vector<glm::dvec2>& above);
 
 /// The greatest difference in any channel.
 [[nodiscard]] float difference(const glm::vec4& a, const glm::vec4& b);
@@ -169,7 +165,7 @@ struct CutOutline {
 class ColorGroups {
  public:
   /// A colour may differ from the first colour of its group by `reach` in each channel; channels are 0 to 255.
-  explicit ColorGroups(double reach);
+  explicit ColorGroups(double reach) : reach_(reach), cell_size_(std::max(reach * 1.001, kLeastCell)) {}
 
   /// The number of the first group within reach of `color`; adds a new group if there is none.
   std::uint32_t find_or_add(const glm::vec4& color);
@@ -178,6 +174,7 @@ class ColorGroups {
  private:
   [[nodiscard]] std::uint32_t find(const glm::ivec4& cell, const glm::vec4& color) const;
 
+  static constexpr double kLeastCell = 1.0 / 64;  ///< steps of 8 bits
   const double reach_, cell_size_;
   std::vector<glm::vec4> colors_;
   std::unordered_map<std::uint64_t, std::vector<std::uint32_t>> cells_;

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each fold is judged by the surfaces beside it, in the plane perpendicular to its edge. Then folds that share vertices
-// are judged together.
+// Each fold is judged by the surfaces beside it, in the plane across its edge; then with folds that share vertices.
 //
 //     left normal   right normal        The angle between both normals is how far the surface turns at the fold.
 //             \      /                  Beyond each triangle the surface turns on by some angle, which is found by
 //       _______\____/                   walking around the triangle's tip. Half of that angle is subtracted for each
-//      /        edge \                  side. The rest is the jump: 0 on a cylinder, however few sides it has.
+//      /        edge \                  side: the rest is the jump, 0 on a cylinder however few sides it has.
 //
-// Angles are computed from the tangents of their halves, by a series for the arctangent, without functions of the C
-// library. Every machine rounds the operations of the series alike, so drawings are the same on all machines.
+// Angles are computed from tangents of half angles, and by sums of arctangents, without functions of the C library.
+// Every machine rounds these operations alike, so drawings are the same on all machines.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -43,6 +42,7 @@ bool runs(const glm::uvec3& triangle, std::uint32_t a, std::uint32_t b) {
   return (triangle.x == a && triangle.y == b) || (triangle.y == a && triangle.z == b) ||
          (triangle.z == a && triangle.x == b);
 }
+
 /// The triangles around a vertex, for walking around it.
 class Fan {
  public:
@@ -64,15 +64,21 @@ class Fan {
   /// Crosses a side: returns the triangle beyond it, with that triangle's other side at the vertex. Copies of a
   /// triangle count once. Returns no triangle if several different ones lie beyond.
   [[nodiscard]] Side beyond(const Side& side) const {
-    if (side.entry >= count_) return {{}, no_index, count_};
+    Side found{{}, no_index, count_};
+    if (side.entry >= count_) return found;
     std::uint32_t beside = 0;  // bit i: entry i has the rim
     for (std::size_t i = 0; i < count_; ++i)
       beside |= std::uint32_t(entries_[i].next == side.rim || entries_[i].last == side.rim) << i;
     beside &= ~(1u << side.entry);
-    const bool is_one = (beside & (beside - 1)) == 0 && beside != 0;
-    const Side found = is_one ? to(std::size_t(std::countr_zero(beside)), side) : beyond_copies(side, beside);
     const Entry& own = entries_[side.entry];
-    return found.rim == (own.next == side.rim ? own.last : own.next) ? Side{{}, no_index, count_} : found;
+    const std::uint32_t own_rim = own.next == side.rim ? own.last : own.next;
+    for (; beside != 0; beside &= beside - 1) {
+      const Side other = to(std::size_t(std::countr_zero(beside)), side);
+      if (other.rim == own_rim || other.rim == found.rim) continue;
+      if (found.triangle.is_there()) return {{}, no_index, count_};
+      found = other;
+    }
+    return found;
   }
 
  private:
@@ -90,26 +96,12 @@ class Fan {
     return {{other.triangle, from.triangle.is_turned == is_alike}, rim, entry};
   }
 
-  [[nodiscard]] Side beyond_copies(const Side& side, std::uint32_t beside) const {
-    const Entry& own = entries_[side.entry];
-    const std::uint32_t own_rim = own.next == side.rim ? own.last : own.next;
-    Side found{{}, no_index, count_};
-    for (; beside != 0; beside &= beside - 1) {
-      const Side other = to(std::size_t(std::countr_zero(beside)), side);
-      if (other.rim == own_rim || other.rim == found.rim) continue;
-      if (found.triangle.is_there()) return {{}, no_index, count_};
-      found = other;
-    }
-    return found;
-  }
-
   std::array<Entry, most> entries_;
   std::size_t count_ = 0;
 };
 
 class Neighbours {
  public:
-  /// O(triangles).
   Neighbours(const SeenMesh& seen, const CornerTable& table, const Execution& execution)
       : seen_(seen), table_(table), is_sliver_(seen.mesh.triangles.size()) {
     parallel_for(execution, is_sliver_.size(), kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
@@ -120,8 +112,7 @@ class Neighbours {
   [[nodiscard]] const glm::uvec3& corners(std::uint32_t triangle) const { return seen_.mesh.triangles[triangle]; }
   [[nodiscard]] glm::dvec3 place(std::uint32_t vertex) const { return seen_.mesh.positions[vertex]; }
 
-  /// The triangle beyond the side from vertex a to vertex b. Copies of a triangle count once. Returns no triangle if
-  /// several different ones lie beyond. O(triangles at a).
+  /// As Fan::beyond(), for the side from vertex a to vertex b. O(triangles at a).
   [[nodiscard]] TurnedTriangle beyond(const TurnedTriangle& triangle, std::uint32_t a, std::uint32_t b) const {
     const WeldedMesh& mesh = seen_.mesh;
     const std::uint32_t own = third_of(corners(triangle.number), a, b);
@@ -140,7 +131,6 @@ class Neighbours {
     return {found, triangle.is_turned == is_alike};
   }
 
-  /// The fan of a vertex. O(triangles at the vertex).
   [[nodiscard]] Fan fan(std::uint32_t vertex) const {
     Fan fan;
     const std::span<const Corner> corners = table_[vertex];
@@ -152,16 +142,16 @@ class Neighbours {
 
   /// The triangle's own normal, of unit length or zero.
   [[nodiscard]] glm::dvec3 normal(const TurnedTriangle& triangle) const {
-    const glm::vec3& kept = seen_.triangles[triangle.number].normal;
-    const glm::dvec3 normal = kept == glm::vec3(0) ? rounded_normal(triangle.number) : glm::dvec3(kept);
+    glm::dvec3 normal(seen_.triangles[triangle.number].normal);
+    if (normal == glm::dvec3(0)) normal = unit_of(normal_of(seen_.mesh, triangle.number));
     return triangle.is_turned ? -normal : normal;
   }
   /// Whether the corners lie almost on a line, one between the other two. The normal of such a triangle says little
   /// about its surface: a sliver between three vertices of a cylinder's rim lies in the rim's plane.
   [[nodiscard]] bool is_sliver(std::uint32_t triangle) const { return is_sliver_[triangle] != 0; }
 
-  /// The normal of the surface to which the triangle belongs. For a sliver, this is the neighbour's normal that is
-  /// nearest to the sliver's own, unless the sliver and its neighbours in one plane form a wider piece.
+  /// The normal of the surface that the triangle is cut from. A sliver that is not part of something wider takes the
+  /// neighbour's normal that is nearest to its own.
   [[nodiscard]] glm::dvec3 surface_normal(const TurnedTriangle& triangle) const {
     const glm::dvec3 own = normal(triangle);
     if (!is_sliver(triangle.number)) return own;
@@ -205,12 +195,6 @@ class Neighbours {
       if (dot > 0) return dot * dot > kWidestCorner * kWidestCorner * glm::dot(u, u) * glm::dot(v, v);
     }
     return false;
-  }
-
-  [[nodiscard]] glm::dvec3 rounded_normal(std::uint32_t triangle) const {
-    const glm::dvec3 normal = normal_of(seen_.mesh, triangle);
-    const double length = glm::length(normal);
-    return length > 0 ? normal / length : glm::dvec3(0);
   }
 
   const SeenMesh& seen_;
@@ -259,26 +243,17 @@ double angle_of(double half) {
   return 4 * t * sum;
 }
 
-/// The angle between two vectors, but at most pi / 2.
-double angle_between(const glm::dvec3& n, const glm::dvec3& m) {
-  const double cosine = glm::dot(n, m);
-  return angle_of(cosine > 0 ? half_tangent(glm::length(glm::cross(n, m)), cosine) : 1);
-}
-
 /// The plane perpendicular to an edge. A surface normal, projected to this plane, is a complex number. Its argument is
 /// the angle around the edge from the left side's normal.
-class CrossSection {
- public:
-  CrossSection(const glm::dvec3& along, const glm::dvec3& left)
-      : along_(along), up_(left - along * glm::dot(left, along)), side_(glm::cross(along, up_)) {}
+struct CrossSection {
+  CrossSection(const glm::dvec3& edge, const glm::dvec3& left)
+      : along(edge), up(left - along * glm::dot(left, along)), side(glm::cross(along, up)) {}
 
   [[nodiscard]] glm::dvec2 direction(const glm::dvec3& normal) const {
-    return {glm::dot(normal, up_), glm::dot(normal, side_)};
+    return {glm::dot(normal, up), glm::dot(normal, side)};
   }
-  [[nodiscard]] const glm::dvec3& along() const { return along_; }
 
- private:
-  glm::dvec3 along_, up_, side_;
+  glm::dvec3 along, up, side;
 };
 
 /// half_tangent() of the angle from one direction to another.
@@ -336,8 +311,7 @@ struct FoldSide {
   double width;
 };
 
-/// How far the surface turns beyond the triangle of `side`. `sense` is 1 if larger angles turn in the sense of the
-/// fold, else -1. Only triangles ahead of the tip count.
+/// `sense` is 1 where larger angles turn in the sense of the fold, else -1. Only surface ahead of the tip counts.
 Turn turn_beyond(const Neighbours& near, const FoldSide& side, const CrossSection& section, double sense) {
   const auto is_ahead = [&](std::uint32_t rim) {
     const glm::dvec3 step = near.place(rim) - near.place(side.tip);
@@ -374,11 +348,9 @@ Turn turn_beyond(const Neighbours& near, const FoldSide& side, const CrossSectio
   return turn;
 }
 
-/// Judges the fold at an edge of two triangles. Its jump is the angle between the normals of both sides, less half of
-/// the angle by which each side turns next. So the jump is 0 on a cylinder, however few sides the cylinder has, the
-/// whole angle at a chamfer or a cone's rim, and half the angle between a plane and a fillet. Two rules adjust the
-/// grade. A side that turns back is rough, and the fold has to be deeper by as much. If each side turns one way only,
-/// by at most half of the jump, fainter folds count. A side counts little if its triangle is much wider than the
+/// A chamfer or a cone's rim jumps by its whole angle, the edge between a plane and a fillet by half. Two rules adjust
+/// the grade. A side that turns back is rough, and the fold has to be deeper by as much. If each side turns one way
+/// only, by at most half of the jump, fainter folds count. A side counts little if its triangle is much wider than the
 /// triangle on the other side. O(triangles at the corners of both triangles).
 JudgedFold judge_fold(const Neighbours& near, const FeatureEdge& edge) {
   const bool is_alike =
@@ -386,7 +358,10 @@ JudgedFold judge_fold(const Neighbours& near, const FeatureEdge& edge) {
   const TurnedTriangle triangles[2] = {{edge.left, false}, {edge.right, !is_alike}};
   const glm::dvec3 normals[2] = {near.surface_normal(triangles[0]), near.surface_normal(triangles[1])};
   const double cosine = glm::dot(normals[0], normals[1]);
-  if (cosine < kSharpCosine) return {FoldGrade::sharp, angle_between(normals[0], normals[1])};
+  if (cosine < kSharpCosine) {
+    const double half = cosine > 0 ? half_tangent(glm::length(glm::cross(normals[0], normals[1])), cosine) : 1;
+    return {FoldGrade::sharp, angle_of(half)};
+  }
   if (cosine > kLeastFoldCosine) return {};
 
   const glm::dvec3 begin = near.place(edge.from);
@@ -395,7 +370,7 @@ JudgedFold judge_fold(const Neighbours& near, const FeatureEdge& edge) {
   for (int i = 0; i < 2; ++i) {
     const std::uint32_t tip = third_of(near.corners(triangles[i].number), edge.from, edge.to);
     const glm::dvec3 to_tip = near.place(tip) - begin;
-    const glm::dvec3 across = to_tip - section.along() * glm::dot(to_tip, section.along());
+    const glm::dvec3 across = to_tip - section.along * glm::dot(to_tip, section.along);
     const double width = glm::length(across);
     sides[i] = {triangles[i], tip, normals[i], across / width, section.direction(normals[i]), width};
   }
@@ -431,7 +406,6 @@ std::vector<JudgedFold> judge_folds(const SeenMesh& seen, const CornerTable& tab
   return folds;
 }
 
-/// The edges that may be drawn, by their end vertices.
 class CreaseGraph {
  public:
   CreaseGraph(const WeldedMesh& mesh, const std::vector<FeatureEdge>& edges, std::vector<JudgedFold> folds,
@@ -454,7 +428,7 @@ class CreaseGraph {
       const std::uint32_t edge = open.back();
       open.pop_back();
       for (const std::uint32_t vertex : {edges_[edge].from, edges_[edge].to})
-        for (const std::uint32_t next : at(vertex)) {
+        for (const std::uint32_t next : edges_at_[vertex]) {
           if (folds_[next].grade != FoldGrade::weak || bend(edge, next, vertex) < kGoesOn) continue;
           folds_[next].grade = FoldGrade::strong;
           open.push_back(next);
@@ -462,8 +436,7 @@ class CreaseGraph {
     }
   }
 
-  /// Removes the faintest crease of each triangle with three creases, if it is much fainter than the deepest. A
-  /// triangle has three creases where a crease zigzags across a row of triangles.
+  /// Removes the faintest crease of triangles with three, as where a crease zigzags across a row of triangles.
   void thin() {
     const auto for_each_side = [&](const auto& visit) {
       for (std::size_t i = 0; i < edges_.size(); ++i)
@@ -515,7 +488,6 @@ class CreaseGraph {
   [[nodiscard]] bool is_drawn(std::size_t edge) const { return folds_[edge].grade >= FoldGrade::strong; }
 
  private:
-  [[nodiscard]] std::span<const std::uint32_t> at(std::uint32_t vertex) const { return edges_at_[vertex]; }
   [[nodiscard]] std::uint32_t other_end(std::uint32_t edge, std::uint32_t vertex) const {
     return edges_[edge].from == vertex ? edges_[edge].to : edges_[edge].from;
   }
@@ -528,7 +500,7 @@ class CreaseGraph {
     return -glm::dot(direction_from(edge, vertex), direction_from(next, vertex));
   }
   [[nodiscard]] std::size_t drawn_at(std::uint32_t vertex) const {
-    const std::span<const std::uint32_t> here = at(vertex);
+    const std::span<const std::uint32_t> here = edges_at_[vertex];
     return std::size_t(std::count_if(here.begin(), here.end(), [&](std::uint32_t e) { return is_drawn(e); }));
   }
 
@@ -538,7 +510,7 @@ class CreaseGraph {
     std::vector<std::uint32_t> line;
     for (std::uint32_t vertex = tip; line.size() < kFewestEdges;) {
       std::uint32_t next = no_index;
-      for (const std::uint32_t edge : at(vertex))
+      for (const std::uint32_t edge : edges_at_[vertex])
         if (is_drawn(edge) && (line.empty() || edge != line.back())) next = edge;
       if (next == no_index || !is_fold(edges_[next])) break;
       if (!line.empty() && bend(line.back(), next, vertex) < kBend) break;

@@ -1,30 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tree of boxes finds the pairs of triangles that may cross. Triangles are sorted once, by class of size and then by
-// place on D. Hilbert's curve. Sixteen neighbours form a group, sixteen groups a larger group, and so on. A group is
-// compared with itself and with all later groups whose boxes touch its own, so every pair is compared once.
+// Pairs of triangles that may cross are found by a tree of boxes: triangles are sorted by (class of size, place on D.
+// Hilbert's curve), in groups of sixteen, groups of sixteen groups, and so on. A group is compared with itself and with
+// all later groups whose boxes touch its own, so every pair meets once.
 //
-// Two triangles that straddle each other's planes each meet the planes' common line in an interval. The intersection of
-// both intervals is bounded by those of their four ends that lie within the other triangle. Signs of tetrahedra tell
-// which ends lie there, before any point is constructed.
+// Two triangles that straddle each other's planes meet the planes' common line in an interval each. The common part of
+// the intervals ends at those of their four ends that lie within the other triangle, as signs of tetrahedra tell.
 // O. Devillers, P. Guigue. Faster Triangle-Triangle Intersection Tests. 2002.
 #include "lines/crossings/crossings.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <tuple>
-#include <vector>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/work_limit.h"
 #include "lines/crossings/space_lanes.h"
 #include "lines/lists.h"
-#include "lines/mesh/feature_edges.h"
 #include "surfaces/hilbert.h"
 #include "surfaces/radix_sort.h"
 #include "view/sight.h"
@@ -45,46 +41,15 @@ std::uint32_t spread(std::uint32_t bits) {
 
 Box box_of(const WeldedMesh& mesh, std::size_t triangle) {
   Box box;
-  for (int k = 0; k < 3; ++k) box.include(mesh.positions.places()[mesh.triangles[triangle][k]]);
+  for (int k = 0; k < 3; ++k) box.include(mesh.positions.places[mesh.triangles[triangle][k]]);
   return box;
 }
 
 /// The exponent of the box's longest side, which is not 0. Equal to std::frexp()'s, but computed many times faster.
 int exponent_of(const Box& box) {
   const glm::dvec3 size = glm::dvec3(box.high) - glm::dvec3(box.low);
-  const double longest = std::max({size.x, size.y, size.z});
-  std::uint64_t bits;
-  std::memcpy(&bits, &longest, sizeof bits);
+  const auto bits = bits_as<std::uint64_t>(std::max({size.x, size.y, size.z}));
   return std::clamp(int(bits >> 52) - 1022, -kExponents, kExponents - 1);
-}
-
-/// Classes of triangles by size.
-struct SizeClasses {
-  /// The class of each exponent. Class 0 has the smallest nine tenths of all triangles; further classes span a factor
-  /// of 4 each.
-  std::array<std::uint32_t, 2 * kExponents> of{};
-  int usual = 0;  ///< the largest exponent of class 0
-};
-
-/// Determines the classes from every sixteenth triangle.
-SizeClasses size_classes(const WeldedMesh& mesh, const Execution& execution) {
-  const std::size_t asked = (mesh.triangles.size() + 15) / 16;
-  Buffer<std::int16_t> exponents(asked);
-  parallel_for(execution, asked, kPerPart / 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) exponents[i] = std::int16_t(exponent_of(box_of(mesh, 16 * i)));
-  });
-  std::array<std::size_t, 2 * kExponents> counts{};
-  for (const std::int16_t exponent : exponents) ++counts[std::size_t(exponent + kExponents)];
-  SizeClasses classes;
-  std::size_t seen = 0;
-  std::uint32_t above = 0;
-  for (std::size_t e = 0; e < counts.size(); ++e) {
-    if (10 * seen >= 9 * asked) ++above;
-    if (above == 0) classes.usual = int(e) - kExponents;
-    classes.of[e] = std::min(7u, above / 2);
-    seen += counts[e];
-  }
-  return classes;
 }
 
 Box bounds_of(const Buffer<glm::vec3>& places, const Execution& execution) {
@@ -102,8 +67,9 @@ Box bounds_of(const Buffer<glm::vec3>& places, const Execution& execution) {
 /// Computes sort keys of 30 bits: the class of size, then the place of the box's middle on D. Hilbert's curve.
 class Curve {
  public:
-  Curve(const WeldedMesh& mesh, const Execution& execution) : classes_(size_classes(mesh, execution)) {
-    const Box all = bounds_of(mesh.positions.places(), execution);
+  Curve(const WeldedMesh& mesh, const Execution& execution) {
+    find_classes(mesh, execution);
+    const Box all = bounds_of(mesh.positions.places, execution);
     low_ = glm::dvec3(all.low);
     const glm::dvec3 extent = glm::dvec3(all.high) - low_;
     scale_ = kSteps / std::max({extent.x, extent.y, extent.z, 1e-300});
@@ -112,18 +78,40 @@ class Curve {
   [[nodiscard]] std::uint32_t place_of(const Box& box) const {
     const glm::dvec3 at = ((glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5 - low_) * scale_;
     const auto step = [&](double t) { return spread_[std::size_t(std::clamp(t, 0.0, kSteps))]; };
-    const std::uint32_t size = classes_.of[std::size_t(exponent_of(box) + kExponents)];
+    const std::uint32_t size = class_of_[std::size_t(exponent_of(box) + kExponents)];
     return size << 3 * kBitsAnAxis | hilbert_place(step(at.x) | step(at.y) << 1 | step(at.z) << 2, kBitsAnAxis);
   }
   /// A power of two that makes most triangles about 1 in size. The kernels take products of many lengths, and denormal
   /// floats cost hundreds of cycles. The scaling rounds nothing, and the kernels leave pairs open whose values become
   /// infinite.
-  [[nodiscard]] float scale() const { return std::ldexp(1.0f, std::clamp(-classes_.usual, 0, kMostScale)); }
+  [[nodiscard]] float scale() const { return std::ldexp(1.0f, std::clamp(-usual_, 0, kMostScale)); }
 
  private:
+  /// Determines classes of size from every sixteenth triangle.
+  void find_classes(const WeldedMesh& mesh, const Execution& execution) {
+    const std::size_t asked = (mesh.triangles.size() + 15) / 16;
+    Buffer<std::int16_t> exponents(asked);
+    parallel_for(execution, asked, kPerPart / 16, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) exponents[i] = std::int16_t(exponent_of(box_of(mesh, 16 * i)));
+    });
+    std::array<std::size_t, 2 * kExponents> counts{};
+    for (const std::int16_t exponent : exponents) ++counts[std::size_t(exponent + kExponents)];
+    std::size_t seen = 0;
+    std::uint32_t above = 0;
+    for (std::size_t e = 0; e < counts.size(); ++e) {
+      if (10 * seen >= 9 * asked) ++above;
+      if (above == 0) usual_ = int(e) - kExponents;
+      class_of_[e] = std::min(7u, above / 2);
+      seen += counts[e];
+    }
+  }
+
   static constexpr double kSteps = (1 << kBitsAnAxis) - 1;
   static constexpr int kMostScale = 60;
-  SizeClasses classes_;
+  /// The class of each exponent. Class 0 has the smallest nine tenths of all triangles; further classes span a factor
+  /// of 4 each.
+  std::array<std::uint32_t, 2 * kExponents> class_of_{};
+  int usual_ = 0;  ///< the largest exponent of class 0
   glm::dvec3 low_{0};
   double scale_ = 0;
   std::array<std::uint32_t, 1 << kBitsAnAxis> spread_;
@@ -131,8 +119,7 @@ class Curve {
 
 class BoxTree {
  public:
-  /// O(triangles). Triangles of similar size are grouped, so that large ones do not widen the boxes of small ones.
-  /// Twins (Features::twins) are left out.
+  /// O(triangles). Twins (Features::twins) are left out.
   BoxTree(const WeldedMesh& mesh, const Features& features, const Execution& execution)
       : kernels_(space_kernels(execution.isa)), triangles_(mesh.triangles.size() - features.twins.size()) {
     const std::vector<std::uint32_t>& left_out = features.twins;
@@ -161,7 +148,7 @@ class BoxTree {
           triangles_.numbers[i] = number;
           for (int k = 0; k < 3; ++k) {
             const std::uint32_t vertex = (&mesh.triangles[number].x)[k];
-            const glm::vec3 corner = mesh.positions.places()[vertex] * scale;
+            const glm::vec3 corner = mesh.positions.places[vertex] * scale;
             triangles_.vertices[k][i] = knows_spread && features.is_spread[vertex] ? vertex : vertex | kNotSpread;
             triangles_.corners[3 * k][i] = corner.x;
             triangles_.corners[3 * k + 1][i] = corner.y;
@@ -243,13 +230,11 @@ class BoxTree {
 
 constexpr std::size_t kGroupsPerPart = 16, kPairsPerPoll = 16384;
 constexpr std::size_t kMostSegments = std::size_t(1) << 20, kMostSegmentsOfTriangle = 16;
-/// A pair of triangles counts as kStepsOfPair steps of ten nanoseconds each. All pairs together may take kMostSteps
-/// steps, and kMostStepsOfTriangle more for each triangle. (A city has 42 thousand segments.)
+/// A pair counts as kStepsOfPair steps of ten nanoseconds; the other two bound all steps.
 constexpr std::uint64_t kStepsOfPair = 8, kMostSteps = std::uint64_t(1) << 30, kMostStepsOfTriangle = 256;
 
 /// A triangle with its vertices in ascending order, so that every computation with its plane gives the same bits.
-class CrossedFace {
- public:
+struct CrossedFace {
   CrossedFace(const WeldedMesh& mesh, std::uint32_t number)
       : triangle(number),
         vertices(ascending(mesh.triangles[number])),
@@ -263,7 +248,6 @@ class CrossedFace {
   const glm::uvec3 vertices;
   const FacePlane plane;
 
- private:
   static glm::uvec3 ascending(glm::uvec3 v) {
     if (v.x > v.y) std::swap(v.x, v.y);
     if (v.y > v.z) std::swap(v.y, v.z);
@@ -272,8 +256,12 @@ class CrossedFace {
   }
 };
 
+/// The heights of a face's corners over the plane of another; 0 for corners that both share.
 struct Heights {
-  Signed of[3];
+  Heights(const WeldedMesh& mesh, const CrossedFace& face, const CrossedFace& over) {
+    for (int k = 0; k < 3; ++k)
+      if (!over.has(face.vertices[k])) of[k] = over.plane.height(mesh.positions[face.vertices[k]]);
+  }
 
   [[nodiscard]] bool straddle() const {
     const auto any = [&](int sign) { return of[0].sign == sign || of[1].sign == sign || of[2].sign == sign; };
@@ -289,14 +277,9 @@ struct Heights {
     }
     return corner;
   }
-};
 
-Heights heights(const WeldedMesh& mesh, const CrossedFace& face, const CrossedFace& over) {
-  Heights heights;
-  for (int k = 0; k < 3; ++k)
-    if (!over.has(face.vertices[k])) heights.of[k] = over.plane.height(mesh.positions[face.vertices[k]]);
-  return heights;
-}
+  Signed of[3];
+};
 
 /// A point in which a face's outline meets the plane of another face: an end of the first face's interval.
 struct EdgeMeeting {
@@ -319,10 +302,7 @@ std::array<EdgeMeeting, 2> meetings(const WeldedMesh& mesh, const CrossedFace& f
     const Signed &a = heights.of[sides[k][0]], &b = heights.of[sides[k][1]];
     if (a.sign * b.sign >= 0) continue;
     const std::uint32_t p = face.vertices[sides[k][0]], q = face.vertices[sides[k][1]];
-    const double from_p = std::abs(a.value), sum = from_p + std::abs(b.value);
-    const double t = sum > 0 ? from_p / sum : 0.5;
-    const glm::dvec3 from = mesh.positions[p], to = mesh.positions[q];
-    found[count++] = {{t <= 0.5 ? from + (to - from) * t : to + (from - to) * (1 - t), {p, q}}, p, q};
+    found[count++] = {{place_between(mesh.positions[p], mesh.positions[q], root_between(a, b)), {p, q}}, p, q};
   }
   return found;
 }
@@ -350,22 +330,19 @@ std::optional<std::uint32_t> shared_vertex(const CrossedFace& a, const CrossedFa
   return std::nullopt;
 }
 
-/// Whether two faces with a shared vertex lie on different sides of that vertex along their planes' common line, as
-/// most neighbours do. The common line meets the edge of the first face that is opposite the vertex; the orientation of
-/// that edge to an edge of the second face decides. `heights` are heights of the first face's corners over the second
-/// face. Precondition: each face straddles the other's plane.
+/// For two faces that share a vertex and straddle each other's planes: whether they lie on different sides of that
+/// vertex along the planes' common line, as most neighbours do. The line meets the first face's opposite edge; seen
+/// along that edge, the second face is then turned the wrong way. `heights`: of the first face over the second.
 bool lie_apart(const WeldedMesh& mesh, const std::array<const CrossedFace*, 2>& faces, const Heights& heights,
                std::uint32_t shared) {
   const glm::uvec3 &a = faces[0]->vertices, &b = faces[1]->vertices;
   const int from = a.x == shared ? 1 : 0, to = a.z == shared ? 1 : 2;
-  // `next` is the first of the second face's other corners. The shared corner followed by the other two keeps the
-  // winding of the face, unless the shared corner is the middle one.
+  // The shared corner followed by the two others has the same order as all three, unless it is the middle one.
   const std::uint32_t next = b.x == shared ? b.y : b.x;
   const int order = b.y == shared ? -1 : 1;
   return turn(mesh, a[from], a[to], shared, next) * heights.of[from].sign * order > 0;
 }
 
-/// The segments found so far, and the edges that lie in planes of other triangles.
 struct Found {
   std::vector<Crossing> crossings;
   std::vector<EdgeContact> contacts;
@@ -380,10 +357,10 @@ struct Found {
 /// The segment in which two triangles cross, if there is one. Adds contacts to `found`. Precondition: the triangles
 /// share at most one vertex.
 std::optional<Crossing> crossing(const WeldedMesh& mesh, const std::array<const CrossedFace*, 2>& faces, Found& found) {
-  const Heights first = heights(mesh, *faces[0], *faces[1]);
+  const Heights first(mesh, *faces[0], *faces[1]);
   const int first_beside = first.beside();
   if (!first.straddle() && first_beside < 0) return std::nullopt;
-  const Heights second = heights(mesh, *faces[1], *faces[0]);
+  const Heights second(mesh, *faces[1], *faces[0]);
   const int second_beside = second.beside();
   if (!second.straddle() && second_beside < 0) return std::nullopt;
   found.add_contact(*faces[0], first_beside, faces[1]->triangle);
@@ -409,19 +386,6 @@ std::optional<Crossing> crossing(const WeldedMesh& mesh, const std::array<const 
 auto order(const Crossing& c) {
   const glm::dvec3 &a = c.from.place, &b = c.to.place;
   return std::make_tuple(a.x, a.y, a.z, b.x, b.y, b.z, c.left, c.right);
-}
-
-bool is_same_line(const Crossing& a, const Crossing& b) {
-  return a.from.place == b.from.place && a.to.place == b.to.place;
-}
-
-/// Puts the lesser end first, and drops segments whose ends were rounded to one place.
-void order_ends(std::vector<Crossing>& crossings) {
-  for (Crossing& c : crossings) {
-    const glm::dvec3 &p = c.from.place, &q = c.to.place;
-    if (std::make_tuple(q.x, q.y, q.z) < std::make_tuple(p.x, p.y, p.z)) std::swap(c.from, c.to);
-  }
-  std::erase_if(crossings, [](const Crossing& c) { return c.from.place == c.to.place; });
 }
 
 }  // namespace
@@ -464,9 +428,17 @@ std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& fea
   });
   std::vector<Crossing> all = joined(crossings, execution);
   add_contacts(mesh, features, joined(contacts, execution), all);
-  order_ends(all);
+  for (Crossing& c : all) {  // the lesser end is the first
+    const glm::dvec3 &p = c.from.place, &q = c.to.place;
+    if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(c.from, c.to);
+  }
+  // The ends of some were rounded to one place.
+  std::erase_if(all, [](const Crossing& c) { return c.from.place == c.to.place; });
   sort_in_parts(
       all, [](const Crossing& a, const Crossing& b) { return order(a) < order(b); }, execution);
+  const auto is_same_line = [](const Crossing& a, const Crossing& b) {
+    return a.from.place == b.from.place && a.to.place == b.to.place;
+  };
   all.erase(std::unique(all.begin(), all.end(), is_same_line), all.end());
   return all;
 }

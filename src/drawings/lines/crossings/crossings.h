@@ -26,18 +26,17 @@ struct Crossing {
   std::uint32_t left, right;  ///< the triangles
 };
 
-/// Finds the segments of all pairs of triangles in which each has corners strictly on both sides of the other's plane,
-/// which exact signs decide. The segments of add_contacts() are included. An end is computed from its edge and plane
-/// alone, so segments along a surface join to the bit. Copies of a triangle do not repeat segments. Sorted by the
-/// segments' ends. O(triangles log triangles + pairs whose boxes touch).
-/// \throws Error limit_exceeded for more than 2^20 segments plus 16 per triangle, or more than 2^27 pairs plus 32 per
-/// triangle.
+/// The segments of all pairs of triangles that each have a corner strictly on either side of the other's plane, by
+/// exact signs, and those of add_contacts(). Copies of a triangle give each segment once. Sorted by the segments' ends.
+/// O(triangles log triangles + pairs whose boxes touch).
+/// \throws Error limit_exceeded beyond 2^20 segments and 16 a triangle, or 2^27 pairs and 32 a triangle.
 [[nodiscard]] std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features,
                                                    const Execution& execution);
 
 /// An edge that lies in the plane of a triangle but is none of that triangle's edges. `from` is the lower vertex.
 struct EdgeContact {
   std::uint32_t from, to, triangle;
+  friend auto operator<=>(const EdgeContact&, const EdgeContact&) = default;
 };
 
 /// Appends a segment for each contact whose edge reaches the triangle, if the edge's own two triangles lie on different

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// All decisions are exact. Signs of tetrahedra tell where points lie within a plane; a vertex outside of the plane is
-// the fourth point of each tetrahedron. The order of coordinates tells which point comes first along a line.
+// All decisions are exact. Signs of tetrahedra tell where points lie in a plane, with a vertex beside the plane as
+// their fourth point. Where a surface passes through a plane exactly along an edge, neither of the edge's two triangles
+// has corners on both sides of the plane, and yet the surfaces cross there:
 //
-// find_crossings() finds triangles that have corners on both sides of another triangle's plane. If a surface passes
-// through a plane exactly along an edge, neither of the edge's two triangles has such corners, and yet the surfaces
-// cross there:
-//
-//        \     |               The edge (o) lies in the plane of a third triangle. Its own two triangles lie on
-//    -----o----- plane         different sides of this plane. find_crossings() lists such edges with the triangles in
-//         |                    whose planes they lie. This file decides all of them together, because it needs to know
-//                              their neighbours.
+//        \     |               The edge (o) lies in the plane of a third triangle, and its own two lie on different
+//    -----o----- plane         sides of it. find_crossings() lists such edges with the triangles in whose planes they
+//         |                    lie. They are decided here, all together, because their neighbours have to be known.
 #include <algorithm>
 #include <optional>
 #include <tuple>
@@ -79,16 +75,12 @@ class Wedges {
   std::vector<Wedge> wedges_;
 };
 
-class Contacts {
- public:
-  Contacts(const WeldedMesh& mesh, const Features& features, const std::vector<EdgeContact>& contacts)
-      : mesh_(mesh), features_(features), wedges_(mesh, contacts) {}
-
+struct Contacts {
   [[nodiscard]] std::optional<Crossing> crossing(const EdgeContact& contact) const {
     const Edge edge{contact.from, contact.to};
-    const Wedge& wedge = wedges_.of(edge);
+    const Wedge& wedge = wedges.of(edge);
     if (wedge.count != 2 || is_drawn(edge)) return std::nullopt;
-    const glm::uvec3& t = mesh_.triangles[contact.triangle];
+    const glm::uvec3& t = mesh.triangles[contact.triangle];
     const int above = turn(t.x, t.y, t.z, wedge.apexes[0]), below = turn(t.x, t.y, t.z, wedge.apexes[1]);
     if (above == 0 && below == 0) return std::nullopt;
     // With an apex in the triangle's plane, all points would lie in one plane. So an apex outside of the plane is
@@ -99,27 +91,21 @@ class Contacts {
     const auto any = [&](int sign) { return sides[0] == sign || sides[1] == sign || sides[2] == sign; };
     if (any(1) && any(-1)) return above * below < 0 ? within(edge, wedge, contact.triangle, sides) : std::nullopt;
     for (int k = 0; k < 3; ++k)
-      if (sides[k] == 0 && sides[(k + 1) % 3] == 0) return along({edge, wedge}, t[k], t[(k + 1) % 3]);
+      if (sides[k] == 0 && sides[(k + 1) % 3] == 0) return along(edge, t[k], t[(k + 1) % 3]);
     return std::nullopt;
   }
 
- private:
-  struct EdgeOfTwo {
-    Edge edge;
-    const Wedge& wedge;
-  };
-
   [[nodiscard]] bool is_drawn(const Edge& edge) const {
-    const auto it = std::lower_bound(features_.edges.begin(), features_.edges.end(), edge,
+    const auto it = std::lower_bound(features.edges.begin(), features.edges.end(), edge,
                                      [](const FeatureEdge& feature, const Edge& wanted) {
                                        return Edge{feature.from, feature.to} < wanted;
                                      });
-    return it != features_.edges.end() && Edge{it->from, it->to} == edge;
+    return it != features.edges.end() && Edge{it->from, it->to} == edge;
   }
 
   [[nodiscard]] Signed height(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t x) const {
     if (x == a || x == b || x == c) return {};
-    const Positions& at = mesh_.positions;
+    const Positions& at = mesh.positions;
     return FacePlane(at[a], at[b], at[c]).height(at[x]);
   }
   [[nodiscard]] int turn(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t x) const {
@@ -127,15 +113,15 @@ class Contacts {
   }
   /// Whether vertex `a` comes before vertex `b` along their line.
   [[nodiscard]] bool is_before(std::uint32_t a, std::uint32_t b) const {
-    const glm::dvec3 p = mesh_.positions[a], q = mesh_.positions[b];
+    const glm::dvec3 p = mesh.positions[a], q = mesh.positions[b];
     return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
   }
-  [[nodiscard]] CrossingEnd end_at(std::uint32_t vertex) const { return {mesh_.positions[vertex], {vertex, vertex}}; }
+  [[nodiscard]] CrossingEnd end_at(std::uint32_t vertex) const { return {mesh.positions[vertex], {vertex, vertex}}; }
 
   /// The part of the edge that lies in the triangle. Precondition: the triangle has corners on both sides of the edge.
   [[nodiscard]] std::optional<Crossing> within(const Edge& edge, const Wedge& wedge, std::uint32_t triangle,
                                                const int (&sides)[3]) const {
-    const glm::uvec3& t = mesh_.triangles[triangle];
+    const glm::uvec3& t = mesh.triangles[triangle];
     const std::uint32_t apex = wedge.apexes[0];
     std::vector<CrossingEnd> ends;
     for (const std::uint32_t vertex : {edge.from, edge.to}) {
@@ -150,37 +136,34 @@ class Contacts {
       }
       const std::uint32_t p = std::min(t[k], t[(k + 1) % 3]), q = std::max(t[k], t[(k + 1) % 3]);
       const Signed from = height(p, q, apex, edge.from), to = height(p, q, apex, edge.to);
-      if (sides[k] * sides[(k + 1) % 3] < 0 && from.sign * to.sign < 0) ends.push_back(cut(edge, from, to));
+      if (sides[k] * sides[(k + 1) % 3] < 0 && from.sign * to.sign < 0)
+        ends.push_back({place_between(mesh.positions[edge.from], mesh.positions[edge.to], root_between(from, to)),
+                        {edge.from, edge.to}});
     }
     if (ends.size() != 2) return std::nullopt;
     return Crossing{ends[0], ends[1], wedge.triangles[0], triangle};
   }
 
-  [[nodiscard]] CrossingEnd cut(const Edge& edge, const Signed& from, const Signed& to) const {
-    const glm::dvec3 a = mesh_.positions[edge.from], b = mesh_.positions[edge.to];
-    const double sum = std::abs(from.value) + std::abs(to.value), t = sum > 0 ? std::abs(from.value) / sum : 0.5;
-    return {t <= 0.5 ? a + (b - a) * t : b + (a - b) * (1 - t), {edge.from, edge.to}};
-  }
-
   /// The common part of the edges `one` and p-q, if their triangles alternate around the line on which both edges lie.
-  [[nodiscard]] std::optional<Crossing> along(const EdgeOfTwo& one, std::uint32_t p, std::uint32_t q) const {
+  [[nodiscard]] std::optional<Crossing> along(const Edge& one, std::uint32_t p, std::uint32_t q) const {
     const Edge other{std::min(p, q), std::max(p, q)};
-    const Wedge& wedge = wedges_.of(other);
+    const Wedge &own = wedges.of(one), &wedge = wedges.of(other);
     if (wedge.count != 2 || is_drawn(other)) return std::nullopt;
     if (place_in(one, wedge, 0) * place_in(one, wedge, 1) >= 0) return std::nullopt;
     const auto ordered = [&](Edge e) { return is_before(e.from, e.to) ? e : Edge{e.to, e.from}; };
-    const Edge a = ordered(one.edge), b = ordered(other);
+    const Edge a = ordered(one), b = ordered(other);
     const std::uint32_t from = is_before(a.from, b.from) ? b.from : a.from, to = is_before(a.to, b.to) ? a.to : b.to;
     if (!is_before(from, to)) return std::nullopt;
-    return Crossing{end_at(from), end_at(to), std::min(one.wedge.triangles[0], wedge.triangles[0]),
-                    std::max(one.wedge.triangles[0], wedge.triangles[0])};
+    const auto [left, right] = std::minmax(own.triangles[0], wedge.triangles[0]);
+    return Crossing{end_at(from), end_at(to), left, right};
   }
 
-  /// Where a triangle of `other` lies around edge `e`. 1: between the two triangles of `e` in one sense of rotation;
-  /// -1: between them in the other sense; 0: on one of them.
-  [[nodiscard]] int place_in(const EdgeOfTwo& e, const Wedge& other, int which) const {
-    const std::uint32_t first = e.wedge.apexes[0], second = e.wedge.apexes[1], x = other.apexes[which];
-    const auto around = [&](std::uint32_t a, std::uint32_t b) { return turn(e.edge.from, e.edge.to, a, b); };
+  /// Where a triangle of `other` lies around an edge: 1 between its two triangles in one sense of rotation, -1 between
+  /// them in the other sense, 0 on one of them.
+  [[nodiscard]] int place_in(const Edge& edge, const Wedge& other, int which) const {
+    const Wedge& own = wedges.of(edge);
+    const std::uint32_t first = own.apexes[0], second = own.apexes[1], x = other.apexes[which];
+    const auto around = [&](std::uint32_t a, std::uint32_t b) { return turn(edge.from, edge.to, a, b); };
     // A point outside of the first triangle's plane distinguishes that triangle's half plane from the opposite one.
     std::uint32_t beside = no_index;
     for (const std::uint32_t apex : {second, other.apexes[0], other.apexes[1]})
@@ -199,9 +182,9 @@ class Contacts {
     return at == 2 ? 0 : around(x, second);
   }
 
-  const WeldedMesh& mesh_;
-  const Features& features_;
-  const Wedges wedges_;
+  const WeldedMesh& mesh;
+  const Features& features;
+  const Wedges wedges;
 };
 
 }  // namespace
@@ -209,13 +192,9 @@ class Contacts {
 void add_contacts(const WeldedMesh& mesh, const Features& features, std::vector<EdgeContact> contacts,
                   std::vector<Crossing>& crossings) {
   if (contacts.empty()) return;
-  const auto key = [](const EdgeContact& c) { return std::tie(c.from, c.to, c.triangle); };
-  std::sort(contacts.begin(), contacts.end(),
-            [&](const EdgeContact& a, const EdgeContact& b) { return key(a) < key(b); });
-  contacts.erase(std::unique(contacts.begin(), contacts.end(),
-                             [&](const EdgeContact& a, const EdgeContact& b) { return key(a) == key(b); }),
-                 contacts.end());
-  const Contacts all(mesh, features, contacts);
+  std::sort(contacts.begin(), contacts.end());
+  contacts.erase(std::unique(contacts.begin(), contacts.end()), contacts.end());
+  const Contacts all{mesh, features, Wedges(mesh, contacts)};
   for (const EdgeContact& contact : contacts)
     if (const std::optional<Crossing> found = all.crossing(contact)) crossings.push_back(*found);
 }

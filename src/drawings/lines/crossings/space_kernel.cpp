@@ -7,8 +7,7 @@
 //      neighbours lie on one side of the shared vertex along the common line       LiesApart
 //      both meet the planes' common line in overlapping stretches                  MeetsLineApart
 //
-// Each step answers "certainly not" or "perhaps", with a bound on all rounding errors, so no crossing is lost. Pairs
-// that are left are decided exactly, one at a time.
+// Each step answers "certainly not" or "perhaps", with a bound on all rounding errors. The rest is decided exactly.
 
 #include "lines/crossings/space_lanes.h"
 
@@ -30,8 +29,8 @@ using DU = hn::RebindToUnsigned<D>;
 using V = hn::Vec<D>;
 using M = hn::Mask<D>;
 
-/// kShare bounds the rounding errors of the normal, the difference and the product, as a share of the sum of the terms'
-/// absolute values. kLeast bounds errors by underflow.
+/// kShare bounds the rounding errors of normal, difference and product, as a share of the sum of the terms' absolute
+/// values. kLeast bounds errors by underflow.
 constexpr float kShare = 32.0f / 16777216.0f, kLeast = 1e-36f;
 /// Used in place of kLeast for heights, because products of heights must not underflow either; most sizes are about 1.
 constexpr float kLeastHeight = 1e-20f;
@@ -89,25 +88,11 @@ struct Height {
   }
 };
 
-/// Whether any corner may be above a plane, and whether any may be below it. Vertices shared with the plane's triangle
-/// count as neither.
-struct LaneSides {
-  M above, below;
-
-  HWY_INLINE void Add(const Vector3& corner, const LanePlane& plane, M is_shared) {
-    const Height height(corner, plane);
-    above = hn::Or(above, hn::Not(hn::Or(is_shared, height.is_below)));
-    below = hn::Or(below, hn::Not(hn::Or(is_shared, height.is_above)));
-  }
-  HWY_INLINE M Both() const { return hn::And(above, below); }
-};
-
 HWY_INLINE Vector3 Choose(M mask, const Vector3& yes, const Vector3& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
 }
 
-/// A triangle that a plane cuts: `alone` is the corner that is alone on its side, `one` and `other` are the other two.
-/// Valid only in the lanes of `is_known`, where the side of each corner is certain.
+/// A triangle that a plane cuts: the corner that is alone on its side, and the other two. Valid where `is_known`.
 struct Cut {
   Vector3 alone, one, other;
   M is_known;
@@ -223,13 +208,17 @@ struct Lanes {
   /// Lanes whose planes the probe may straddle, without lanes that share two vertices with the probe.
   HWY_INLINE M IsStraddled(const Probe& probe, const M (&has)[3]) const {
     const D d;
-    LaneSides sides{hn::FirstN(d, 0), hn::FirstN(d, 0)};
-    for (int k = 0; k < 3; ++k) sides.Add(probe.Corner(k), plane, has[k]);
+    M above = hn::FirstN(d, 0), below = above;
+    for (int k = 0; k < 3; ++k) {
+      const Height height(probe.Corner(k), plane);  // shared vertices are on neither side
+      above = hn::Or(above, hn::Not(hn::Or(has[k], height.is_below)));
+      below = hn::Or(below, hn::Not(hn::Or(has[k], height.is_above)));
+    }
     const M two = hn::Or(hn::Or(hn::And(has[0], has[1]), hn::And(has[1], has[2])), hn::And(has[2], has[0]));
-    return hn::AndNot(two, sides.Both());
+    return hn::AndNot(two, hn::And(above, below));
   }
-  /// Lanes in `asked` that certainly do not overlap the probe along the common line of both planes. Each triangle has
-  /// two edges that cross the other's plane. In these lanes, all four pairs of such edges have the same orientation.
+  /// Lanes in `asked` that certainly meet the line common to both planes wholly before the probe or wholly behind it:
+  /// each edge of one triangle that crosses the other's plane has the same orientation to each of the other's.
   HWY_INLINE std::uint64_t MeetsLineApart(const Probe& probe, std::uint64_t asked) const {
     const Vector3 p[3] = {probe.Corner(0), probe.Corner(1), probe.Corner(2)};
     const Cut own(corner, {p[0], probe.Splat3(probe.all.normal), probe.Splat3(probe.all.size)}), other(p, plane);
@@ -242,8 +231,7 @@ struct Lanes {
     const M below = hn::And(hn::And(a.is_below, b.is_below), hn::And(c.is_below, d.is_below));
     return frontmost::HWY_NAMESPACE::BitsOf(D(), hn::Or(above, below)) & known;
   }
-  /// Lanes that share a vertex with the probe, but along the planes' common line certainly lie on the opposite side of
-  /// this vertex, as most neighbours do.
+  /// Lanes that share a vertex with the probe and certainly lie on the other side of it along the planes' common line.
   HWY_INLINE M LiesApart(const Probe& probe, const M (&has)[3]) const {
     const D d;
     const Vector3 p[3] = {probe.Corner(0), probe.Corner(1), probe.Corner(2)};
@@ -264,9 +252,8 @@ struct Lanes {
   }
 };
 
-/// A range of heights over the plane of each probe. If a point of the box has a height in this range, rounding leaves
-/// open on which side of the plane the point lies. Points are taken relative to the middle of the box. The error bound
-/// of the farthest point is used for all points, so that it costs nothing per point.
+/// For each probe: the range of heights over its plane, relative to the middle of a box, in which rounding leaves the
+/// side of a point in the box open. The error of the farthest point is used for all points.
 struct Thresholds {
   HWY_ALIGN float least[kSpaceLanes], most[kSpaceLanes];
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boxes and triangles in space, sixteen side by side: plain data for the kernel of crossings, without any vector type,
-// so that every file may include it.
-//
-// Arrays are padded to whole groups of sixteen: boxes with boxes that touch nothing, triangles with copies of the last
-// one. Callers drop the pairs of padding triangles by their index.
+// Boxes and triangles in space, sixteen side by side: plain data for the kernel of crossings. Arrays are padded to
+// whole groups of sixteen: boxes with boxes that touch nothing, triangles with copies of the last one.
 #pragma once
 
 #include <array>
@@ -18,7 +15,6 @@ inline constexpr std::size_t kSpaceLanes = 16;
   return (count + kSpaceLanes - 1) / kSpaceLanes * kSpaceLanes;
 }
 
-/// Boxes, padded to whole groups of sixteen.
 struct SpaceBoxes {
   Buffer<float> low[3], high[3];
 
@@ -46,7 +42,6 @@ struct SpaceBoxes {
 /// Flag in a vertex number: the triangles of this vertex are not known to lie side by side around it.
 inline constexpr std::uint32_t kNotSpread = 0x80000000u;
 
-/// Triangles, padded by copies of the last one.
 struct SpaceTriangles {
   std::size_t count = 0;
   Buffer<float> corners[9];           ///< coordinates at a common scale
@@ -78,10 +73,9 @@ struct SpaceKernels {
   /// Bit i: box first + i has a point in common with `box`.
   std::uint32_t (*touching)(const SpaceBoxes& boxes, std::size_t first, const Box& box);
   void (*set_probes)(const SpaceTriangles& triangles, std::size_t first, SpaceProbes& probes);
-  /// Finds triangles that may cross a probe. Their boxes touch, and they share no vertex, except vertices with
-  /// kNotSpread. Rounding leaves open that each has corners on both sides of the other's plane, and that both overlap
-  /// along the planes' common line. `box` encloses the sixteen triangles. Sets the masks of probes that may be crossed,
-  /// and returns these probes as bits.
+  /// Finds triangles that may cross a probe: their boxes touch, they share no vertex unless it has kNotSpread, each may
+  /// have corners on both sides of the other's plane, and they may overlap along the planes' common line. `box`
+  /// encloses the sixteen triangles. Sets the masks of probes that may be crossed, and returns these probes as bits.
   std::uint32_t (*crossing)(const SpaceTriangles& triangles, std::size_t first, const Box& box,
                             const SpaceProbes& probes, SpaceMasks& masks);
 };

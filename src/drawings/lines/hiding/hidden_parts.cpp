@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search for the hidden parts of an edge visits the cells that the edge passes. In each cell, it compares the edge
-// with the nearest occluders first, eight at a time. It leaves a cell as soon as the edge's part in that cell is
-// hidden, because further occluders could only hide this part again.
+// An edge is compared with the nearest occluders of a cell first, until its part in the cell is hidden.
 //
 //   edge ----> cells that it passes ----> boxes that overlap it ----> triangles that hide it ----> intervals
 //              (OccluderGrid)             (kernels, 16 at once)       (kernels, 8 at once)         (HiddenIntervals)
 //
-// A triangle hides the edge within four planes. Each plane is a linear function along the edge, so its signs at both
-// ends decide. A vertex of the triangle is recognized by its number, so no arithmetic decides that it lies in the
-// planes through it. The position of a root may be rounded, but a sign never is.
+// A vertex of the triangle is in the planes through it by its number, not by arithmetic. No sign is rounded.
 #include "lines/hiding/hidden_parts.h"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -26,11 +21,10 @@ Signed times(const Signed& value, int sign) { return {value.value * sign, value.
 Interval beyond_near(const Occluder& occluder, const SightedEdge& edge, const Sight& sight, const glm::dvec3& n) {
   const glm::dvec3 a(occluder.corners[0]);
   const auto beyond = [&](const glm::dvec3& x, double distance) {
-    if (sight.is_parallel())
-      return with_sign_of_value(-occluder.turn *
-                                ((distance - sight.near()) * glm::dot(n, sight.forward()) - glm::dot(n, x - a)));
-    return with_sign_of_value(-occluder.turn *
-                              (distance * glm::dot(n, a - sight.eye()) - sight.near() * glm::dot(n, x - sight.eye())));
+    const double value = sight.is_parallel()
+                             ? (distance - sight.near()) * glm::dot(n, sight.forward()) - glm::dot(n, x - a)
+                             : distance * glm::dot(n, a - sight.eye()) - sight.near() * glm::dot(n, x - sight.eye());
+    return with_sign_of_value(-occluder.turn * value);
   };
   return where_positive(beyond(edge.from, edge.from_distance), beyond(edge.to, edge.to_distance), false);
 }
@@ -46,8 +40,8 @@ struct OccluderCorners {
   }
 };
 
-/// The part of `hidden` within the three planes through the eye and a side of the occluder. If the whole edge lies in
-/// one of these planes, along(third) says whether it counts; `third` is the corner opposite that side.
+/// The part of `hidden` within the planes through the eye. `along(third)`: whether an edge counts that lies in one of
+/// these planes from end to end, with the corner `third` opposite.
 template <class Along>
 Interval in_shadow(const Occluder& occluder, const SightedEdge& edge, const Sight& sight, Interval hidden,
                    const Along& along) {
@@ -74,45 +68,6 @@ Interval in_shadow(const Occluder& occluder, const SightedEdge& edge, const Sigh
 bool is_own(const Occluder& occluder, const SightedEdge& edge) {
   return occluder.triangle == edge.own[0] || occluder.triangle == edge.own[1];
 }
-
-}  // namespace
-
-Interval where_positive(const Signed& at_0, const Signed& at_1, bool is_strict) {
-  if (at_0.sign >= 0 && at_1.sign >= 0) {
-    if (is_strict && at_0.sign == 0 && at_1.sign == 0) return {1, 0};
-    return {0, 1};
-  }
-  if (at_0.sign <= 0 && at_1.sign <= 0) return {1, 0};
-  // Rounding may make the values wrong, but not their signs.
-  const double a = std::abs(at_0.value), b = std::abs(at_1.value);
-  const double root = a + b > 0 ? a / (a + b) : 0.5;
-  if (at_0.sign < 0) return {root, 1};
-  return {0, root};
-}
-
-Interval hidden_by(const Occluder& occluder, const SightedEdge& edge, const Sight& sight) {
-  if (is_own(occluder, edge)) return {};
-  const OccluderCorners corners(occluder);
-  const FacePlane plane(corners.at[0], corners.at[1], corners.at[2]);
-  const auto is_corner = [&](std::uint32_t vertex) {
-    return corners.has(vertex, 0, 1) || vertex == occluder.vertices[2];
-  };
-  const auto depth = [&](const EndOn& on, const glm::dvec3& place) {
-    if (is_corner(on[0]) && is_corner(on[1])) return Signed{};
-    return times(plane.height(place, edge.slack), -occluder.turn);
-  };
-  const Interval beyond = where_positive(depth(edge.from_on, edge.from), depth(edge.to_on, edge.to), true);
-  return in_shadow(occluder, edge, sight, beyond, [](const glm::dvec3&) { return true; });
-}
-
-Interval covered_by(const Occluder& occluder, const SightedEdge& edge, const Sight& sight) {
-  if (is_own(occluder, edge)) return {};
-  return in_shadow(occluder, edge, sight, {0, 1}, [&](const glm::dvec3& third) {
-    return sight.plane_through(edge.from, edge.to).turn(third).sign == edge.outer;
-  });
-}
-
-namespace {
 
 constexpr std::size_t kMostAtOnce = 64, kBlock = 16;
 /// A margin, in units of cells, below the tolerance of sides and above the rounding error of a place.
@@ -152,10 +107,8 @@ Interval within_view(const EdgeInEye& edge, const Projection& p) {
 
 /// The edge's point at t, in pixels. Precondition: the point is within the view.
 glm::dvec2 on_screen(const EdgeInEye& edge, double t, const EdgeOccluders& o) {
-  // Interpolated from the nearer end, so that both ends are exact.
-  glm::dvec3 p = t <= 0.5 ? edge.from + (edge.to - edge.from) * t : edge.to + (edge.from - edge.to) * (1 - t);
-  // The point is within the view; rounding may put it outside, if the edge is very much longer than its part in the
-  // view.
+  glm::dvec3 p = place_between(edge.from, edge.to, t);
+  // Rounding may put the point outside of the view, if the edge is very much longer than its part in the view.
   p.z = std::max(p.z, o.sight.near());
   return glm::clamp(glm::dvec2(o.sight.to_screen(p)), glm::dvec2(0), glm::dvec2(o.view.width, o.view.height));
 }
@@ -232,7 +185,7 @@ PartInCell seen_in(const PassedCell& cell, const Interval& part, const EdgeQuest
 bool hold_against_batch(const EdgeQuestion& question, EdgeSearch& search) {
   const SightedEdge& edge = question.edge.edge;
   HiddenBatch found;
-  ++search.batches;
+  search.work += 256;
   (question.hides() ? question.o.kernels.hide : question.o.kernels.cover)(search.batch, edge, question.o.sight, found);
   for (std::uint32_t bits = found.hides | found.open; bits != 0; bits &= bits - 1) {
     const auto i = std::size_t(std::countr_zero(bits));
@@ -246,9 +199,8 @@ bool hold_against_batch(const EdgeQuestion& question, EdgeSearch& search) {
   return (found.hides | found.open) != 0;
 }
 
-/// Adds entry first + i to the batch for each bit i that is set, and compares the batch with the edge whenever it is
-/// full.
-/// \returns false when nothing is left to hide in this cell.
+/// Adds the entries whose bits are set, counted from `first`, to the batch, and compares each full batch. \returns
+/// false when nothing is left to hide in this cell.
 bool ask_entries(std::uint64_t bits, std::size_t first, const PassedCell& cell, const EdgeQuestion& question,
                  EdgeSearch& search) {
   for (; bits != 0; bits &= bits - 1) {
@@ -263,9 +215,8 @@ bool ask_entries(std::uint64_t bits, std::size_t first, const PassedCell& cell, 
   return true;
 }
 
-/// For cells of many entries: compares the edge with the nearest entries first, then with those just before the edge,
-/// then towards the nearest. In a stack of triangles, the entries in between hide less and less, and are skipped once
-/// nothing in the cell is open.
+/// For cells of many entries: asks the nearest first, then those just before the edge, until nothing in the cell is
+/// open. In a stack of triangles, those between hide less and less.
 void ask_many(const OccluderGrid::Visit& cell, const EdgeQuestion& question, EdgeSearch& search) {
   const OccluderGrid& grid = question.o.grid;
   Interval open = search.hidden.open_part(part_in(cell, question));
@@ -277,7 +228,7 @@ void ask_many(const OccluderGrid::Visit& cell, const EdgeQuestion& question, Edg
   const std::size_t blocks = (before + kBlock - 1) / kBlock;
   for (std::size_t i = 0; i < blocks; ++i) {
     const std::size_t offset = (i == 0 ? 0 : blocks - i) * kBlock, count = std::min(kBlock, before - offset);
-    search.boxes += count;
+    search.work += count;
     std::uint64_t bits = question.o.kernels.overlapping(grid.boxes(cell.first + offset), count, in.box);
     if (bits != 0) bits &= question.o.kernels.within_sides(grid.sides(cell.cell, offset), count, in.segment);
     if (bits == 0) continue;
@@ -297,7 +248,7 @@ void ask_few(const OccluderGrid::Visit& cell, const EdgeQuestion& question, Edge
     const ScreenBoxes boxes = question.o.grid.boxes(first);
     if (*boxes.nearest > question.farthest) return;
     const std::size_t count = std::min(kMostAtOnce, cell.last - first);
-    search.boxes += count;
+    search.work += count;
     if (!ask_entries(question.o.kernels.overlapping(boxes, count, part), first, cell, question, search)) return;
   }
 }
@@ -308,7 +259,7 @@ void answer(const EdgeQuestion& question, EdgeSearch& search) {
   search.asked.fill(nullptr);
   search.batch.count = 0;
   question.o.grid.visit_cells(question.begin, question.end, [&](const OccluderGrid::Visit& cell) {
-    question.o.grid.has_sides(cell) ? ask_many(cell, question, search) : ask_few(cell, question, search);
+    question.o.grid.has_sides(cell.cell) ? ask_many(cell, question, search) : ask_few(cell, question, search);
     return !search.hidden.cover(question.span);
   });
   if (search.batch.count > 0) (void)hold_against_batch(question, search);
@@ -367,6 +318,35 @@ void append_outline(DrawnPart part, const EdgeQuestion& question, HiddenInterval
 }
 
 }  // namespace
+
+Interval where_positive(const Signed& at_0, const Signed& at_1, bool is_strict) {
+  if (at_0.sign <= 0 && at_1.sign <= 0 && (is_strict || at_0.sign + at_1.sign < 0)) return {1, 0};
+  if (at_0.sign >= 0 && at_1.sign >= 0) return {0, 1};
+  const double root = root_between(at_0, at_1);
+  return at_0.sign < 0 ? Interval{root, 1} : Interval{0, root};
+}
+
+Interval hidden_by(const Occluder& occluder, const SightedEdge& edge, const Sight& sight) {
+  if (is_own(occluder, edge)) return {};
+  const OccluderCorners corners(occluder);
+  const FacePlane plane(corners.at[0], corners.at[1], corners.at[2]);
+  const auto is_corner = [&](std::uint32_t vertex) {
+    return corners.has(vertex, 0, 1) || vertex == occluder.vertices[2];
+  };
+  const auto depth = [&](const EndOn& on, const glm::dvec3& place) {
+    if (is_corner(on[0]) && is_corner(on[1])) return Signed{};
+    return times(plane.height(place, edge.slack), -occluder.turn);
+  };
+  const Interval beyond = where_positive(depth(edge.from_on, edge.from), depth(edge.to_on, edge.to), true);
+  return in_shadow(occluder, edge, sight, beyond, [](const glm::dvec3&) { return true; });
+}
+
+Interval covered_by(const Occluder& occluder, const SightedEdge& edge, const Sight& sight) {
+  if (is_own(occluder, edge)) return {};
+  return in_shadow(occluder, edge, sight, {0, 1}, [&](const glm::dvec3& third) {
+    return sight.plane_through(edge.from, edge.to).turn(third).sign == edge.outer;
+  });
+}
 
 void EdgeCutter::cut(const SightedEdge& sighted, std::uint32_t number, std::vector<DrawnPart>& parts) {
   const EdgeInEye edge(sighted, o_.sight);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the part of an edge that a triangle hides. This part lies in the triangle's shadow, if the eye is taken as a
-// lamp.
+// The part of an edge that a triangle hides: the part in the triangle's shadow, as if the eye were a lamp.
 //
 //            ____        The shadow is bounded by the triangle's own plane and by three planes through the eye, one
 //   eye  .--|    |.....  along each side. Each plane is a linear function along the edge. Its signs at both ends, and
 //        '--|____|.....  its root between them, say where the edge is inside.
 //
-// Kernels test many occluders at once, with bounds on their rounding errors. Cases that they leave open are decided by
-// hidden_by() or covered_by(), which are exact. So a drawing has the same lines with every instruction set.
+// Kernels test many occluders at once. Cases that rounding leaves open are decided by hidden_by() or covered_by(),
+// which are exact. So a drawing has the same lines with every instruction set.
 #pragma once
 
 #include <algorithm>
@@ -37,8 +36,7 @@ struct SightedEdge {
   std::array<std::uint32_t, 2> own{no_index, no_index};  ///< triangles that contain the segment
   /// Bound on the rounding error of constructed ends, for each axis; 0: both ends are vertices.
   double slack = 0;
-  int outer = 0;  ///< the side, 1 or -1 as for Sight's turns, on which none of the edge's own triangles are seen; 0:
-                  ///< there is no such side
+  int outer = 0;  ///< side, as for Sight's turns, on which none of its own triangles are seen; 0: there is no such side
   double from_distance = 0, to_distance = 0;  ///< planar distances of the ends
 };
 
@@ -58,8 +56,7 @@ inline Interval overlap(const Interval& a, const Interval& b) {
   return {std::max(a.begin, b.begin), std::min(a.end, b.end)};
 }
 
-/// Where a linear function, given by its values at 0 and 1, is not negative between them; with `is_strict`, where it is
-/// positive.
+/// Where a linear function from 0 to 1 with these values at its ends is not negative; if `is_strict`, positive.
 [[nodiscard]] Interval where_positive(const Signed& at_0, const Signed& at_1, bool is_strict);
 
 /// Where `occluder` hides the edge: within its three planes through the eye (boundary included), and beyond its own
@@ -121,11 +118,9 @@ struct HiddenBatch {
 
 /// The functions of one instruction set.
 struct ShadowKernels {
-  /// Bit i: box i overlaps the part and is not wholly beyond it. Tests the first `count` boxes, at most 64; may read
-  /// 64.
+  /// Bit i: box i of the first `count` overlaps the part and is not wholly beyond it. At most 64; reads up to 64.
   std::uint64_t (*overlapping)(const ScreenBoxes& boxes, std::size_t count, const ScreenPart& part);
-  /// Bit i: the segment is neither wholly outside of a side of triangle i nor wholly before its plane. Tests the first
-  /// `count` triangles, at most 64; may read 64.
+  /// Likewise: triangle i has the segment neither outside of one of its sides nor before its plane.
   std::uint64_t (*within_sides)(const ScreenSides& sides, std::size_t count, const ScreenSegment& segment);
   /// Computes hidden_by() of every occluder in the batch, to the bit, except for occluders that are left open.
   void (*hide)(const OccluderBatch& batch, const SightedEdge& edge, const Sight& sight, HiddenBatch& hidden);

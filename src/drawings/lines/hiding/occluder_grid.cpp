@@ -1,30 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// The grid is first made as fine as the number of triangles suggests. If large triangles take too many cells, it is
-// made coarser until they fit. Each cell lists its triangles, the nearest first, but no triangle behind another that
-// covers the whole cell.
+// The grid is first made as fine as the number of triangles suggests, and then coarser until large triangles fit.
 //
 //    small: all cells of its box      large: row by row, from its left side to its right
 //    |##|##|  |                       |  |  |##|  |  |
 //    |##|##|  |                       |  |##|##|##|  |      each cell with the least distance of the triangle
 //    +--+--+--+                       |##|##|##|##|##|      within it
 //
-// Places are rounded outwards to floats, and comparisons of places have a margin far above the rounding error.
-#include "lines/hiding/occluder_grid.h"
-
-#include <array>
+// Places are rounded outwards to floats, and comparisons of places in cells have a pad far above the rounding error.
+#include <atomic>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numeric>
-#include <vector>
 
 #include "base/memory.h"
 #include "base/parallel.h"
 #include "geometry/buckets.h"
-#include "lines/hiding/occluder.h"
+#include "lines/hiding/hidden_parts.h"
 #include "lines/lists.h"
-#include "lines/mesh/mesh.h"
 #include "surfaces/radix_sort.h"
 
 namespace frontmost::lines_detail {
@@ -37,8 +30,7 @@ constexpr double kThinnest = 1e4, kThinnestSide = 1e9;
 /// Margins relative to the values, far above the rounding error of a place in the picture.
 constexpr double kDepthSlack = 1e-9, kSideSlack = 1e-5, kFloatSlack = 1e-6;
 
-/// Triangles per cell. Sixteen boxes are tested at once, so many small cells cost more than few large ones. From 4 to
-/// 32, the time for the million-triangle terrain falls from 1.1 to 0.8 s in all; 64 gains nothing more.
+/// Triangles per cell. Sixteen boxes are tested at once; with 4 a terrain of a million triangles takes a third longer.
 constexpr double kTrianglesPerCell = 32;
 constexpr double kMostCells = 1 << 22;
 /// The most entries per triangle in the mean, and the most entries of all triangles; both limits bound memory.
@@ -48,8 +40,7 @@ constexpr std::size_t kCornersPerPart = 4096, kSeenPerPart = 1024;
 constexpr std::size_t kFetchedAhead = 16;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// `value` moved in `direction` (1 or -1) by the greatest rounding error of a corner, even of one far outside of the
-/// picture.
+/// Moved outwards by the greatest rounding error of a corner, even far outside of the picture.
 double widened(double value, double direction) { return value + direction * 1e-9 * (1 + std::abs(value)); }
 
 }  // namespace
@@ -85,8 +76,7 @@ class CellDepth {
     linear_.by_x = (along_b * (c.y - a.y) - along_c * (b.y - a.y)) / turn;
     linear_.by_y = (along_c * (b.x - a.x) - along_b * (c.x - a.x)) / turn;
     linear_.at_0 = at_a - linear_.by_x * a.x - linear_.by_y * a.y;
-    // A rounding error of a corner tilts the plane, the more the smaller the triangle is, and the plane may be
-    // evaluated far from the triangle.
+    // An error in a place turns the plane, more for smaller triangles, and it may be evaluated far from the triangle.
     linear_.slack = kDepthSlack * (1 + thin) *
                     (std::max(std::abs(value(low_)), std::abs(value(high_))) +
                      (std::abs(linear_.by_x) + std::abs(linear_.by_y)) * (most * 1e-3 + 0.1 / reach));
@@ -106,11 +96,12 @@ class CellDepth {
     return value > 0 ? std::clamp(1 / value, low_, high_) : high_;
   }
 
+  /// Cells of a row; none if first > last.
   struct Columns {
-    int first, last;  ///< none if first > last
+    int first, last;
   };
 
-  /// The cells of row y, from `all.first` to `all.last`, that the triangle covers wholly.
+  /// The cells of row y, among `all`, that the triangle covers whole.
   [[nodiscard]] Columns covered(int y, Columns all) const {
     if (!has_sides_) return {1, 0};
     for (const Linear& side : sides_) {
@@ -130,20 +121,21 @@ class CellDepth {
   /// The function a * x + b * y + c of a point in units of cells, relative to a square's corner. Where it is negative,
   /// the point is certainly outside of a side.
   struct Side {
-    float a = 0, b = 0, c = 1;
+    float a, b, c;
   };
+  static constexpr Side nowhere_outside{0, 0, std::numeric_limits<float>::infinity()};
 
   [[nodiscard]] Side side(int k, const glm::dvec2& corner) const {
     const Linear& side = sides_[k];
     const double size = std::abs(side.by_x) + std::abs(side.by_y);
-    if (!has_sides_ || !(size > 0)) return {};
+    if (!has_sides_ || !(size > 0)) return nowhere_outside;
     return {float(side.by_x / size), float(side.by_y / size),
             float((side.at_0 + side.by_x * corner.x + side.by_y * corner.y) / size + 2 * kSideSlack)};
   }
 
   /// An upper bound on the plane's nearness() within a cell, in the same form; `corner` is the cell's corner.
   [[nodiscard]] Side plane(const glm::dvec2& corner) const {
-    if (!has_plane_) return {0, 0, std::numeric_limits<float>::infinity()};
+    if (!has_plane_) return nowhere_outside;
     const double sign = is_parallel_ ? -1 : 1;
     const double size = std::max(std::abs(nearness(low_, is_parallel_)), std::abs(nearness(high_, is_parallel_)));
     const double at = sign * (linear_.at_0 + linear_.by_x * corner.x + linear_.by_y * corner.y) + linear_.slack;
@@ -188,8 +180,7 @@ struct CellRange {
 
 class GridPlan {
  public:
-  /// Keeps references to its arguments. Makes fewer cells if triangles are large, because a thousand large triangles
-  /// over a million cells would need a thousand million entries. O(triangles).
+  /// Keeps references to its arguments. O(triangles).
   GridPlan(const SeenMesh& its_seen, const View& view, bool all, const Execution& its_execution)
       : seen(its_seen), sight(view), keeps_all(all), execution(its_execution), places_(seen.mesh.positions.size()) {
     const auto triangles = double(seen.mesh.triangles.size());
@@ -239,7 +230,8 @@ class GridPlan {
   struct Outline {
     std::array<glm::dvec2, 5> corners;
     int count = 0;
-    double nearest = 0;
+    double nearest = infinite;
+    glm::dvec2 low{infinite}, high{-infinite};
   };
   /// The left and right ends, in cells; empty if left > right.
   struct Span {
@@ -259,26 +251,21 @@ class GridPlan {
         places_[v] = {p.x * scale, p.y * scale, p.z};
       }
     });
-    find_footprints();
-  }
-
-  /// Finds the footprints of the triangles that are seen, and sorts them by their first cells, so that neighbours on
-  /// the screen are neighbours in memory. Also finds their ranges and occluders, and counts their entries.
-  void find_footprints() {
-    const std::size_t count = seen.mesh.triangles.size(), cells = grid.count();
+    // In the order of first cells, neighbours on the screen are neighbours in memory.
+    const std::size_t count = seen.mesh.triangles.size(), cell_count = grid.count();
     Buffer<Footprint> all(count);
     Buffer<std::uint64_t> keys(count);  // the first cell, then the triangle
     parallel_for(execution, count, kCornersPerPart, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         all[t] = footprint_of(std::uint32_t(t));
         const bool is_seen = all[t].nearest < std::numeric_limits<float>::infinity();
-        const std::size_t cell = is_seen ? grid.number(column(all[t].low.x), row(all[t].low.y)) : cells;
+        const std::size_t cell = is_seen ? grid.number(column(all[t].low.x), row(all[t].low.y)) : cell_count;
         keys[t] = std::uint64_t(cell) << 32 | t;
       }
     });
-    keys = radix_sort(std::move(keys), std::bit_width(cells), execution);
+    keys = radix_sort(std::move(keys), std::bit_width(cell_count), execution);
     const auto held =
-        std::size_t(std::lower_bound(keys.begin(), keys.end(), std::uint64_t(cells) << 32) - keys.begin());
+        std::size_t(std::lower_bound(keys.begin(), keys.end(), std::uint64_t(cell_count) << 32) - keys.begin());
     footprints = Buffer<Footprint>(held);
     ranges = Buffer<CellRange>(held);
     occluders = Buffer<Occluder>(held);
@@ -315,13 +302,8 @@ class GridPlan {
       const Outline outline = outline_of(triangle);
       if (outline.count == 0) return none;
       nearest = outline.nearest;
-      low = glm::dvec3(infinite);
-      high = -low;
-      for (int i = 0; i < outline.count; ++i) {
-        const glm::dvec3 corner(outline.corners[std::size_t(i)], 0);
-        low = glm::min(low, corner);
-        high = glm::max(high, corner);
-      }
+      low = glm::dvec3(outline.low, 0);
+      high = glm::dvec3(outline.high, 0);
     }
     if (nearest > sight.far()) return none;
     low = {widened(low.x, -1), widened(low.y, -1), 0};
@@ -342,10 +324,11 @@ class GridPlan {
     const glm::uvec3& corners = seen.mesh.triangles[triangle];
     const double near = sight.near();
     Outline outline;
-    outline.nearest = infinite;
     const auto add = [&](const glm::dvec2& place, double distance) {
       outline.corners[std::size_t(outline.count++)] = place;
       outline.nearest = std::min(outline.nearest, widened(distance, -1));
+      outline.low = glm::min(outline.low, place);
+      outline.high = glm::max(outline.high, place);
     };
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t v = corners[k], w = corners[(k + 1) % 3];
@@ -371,7 +354,7 @@ class GridPlan {
       a = low;
     };
     order(v.x, v.y), order(v.y, v.z), order(v.x, v.y);
-    const Buffer<glm::vec3>& at = seen.mesh.positions.places();
+    const Buffer<glm::vec3>& at = seen.mesh.positions.places;
     return {{at[v.x], at[v.y], at[v.z]}, {v.x, v.y, v.z}, turn, footprint.triangle, is_near(footprint)};
   }
 
@@ -431,17 +414,11 @@ constexpr std::size_t kPadding = 64;
 
 /// An integer that sorts like the float.
 std::uint32_t ordered(float value) {
-  std::uint32_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
+  const auto bits = bits_as<std::uint32_t>(value);
   return bits & 0x80000000u ? ~bits : bits | 0x80000000u;
 }
 
-float from_ordered(std::uint32_t order) {
-  const std::uint32_t bits = order & 0x80000000u ? order & 0x7FFFFFFFu : ~order;
-  float value;
-  std::memcpy(&value, &bits, sizeof value);
-  return value;
-}
+float from_ordered(std::uint32_t order) { return bits_as<float>(order & 0x80000000u ? order & 0x7FFFFFFFu : ~order); }
 
 /// Sets `least` to the minimum of itself and `value`.
 void lower(std::atomic<float>& least, float value) {
@@ -450,8 +427,7 @@ void lower(std::atomic<float>& least, float value) {
   }
 }
 
-/// For each cell, an upper bound on the distance of the nearest triangle that covers the whole cell. That triangle
-/// hides everything beyond it in the cell.
+/// By cell: an upper bound on the distance of the nearest triangle that covers the cell whole and hides all beyond it.
 std::vector<std::atomic<float>> backs_of(const GridPlan& plan) {
   std::vector<std::atomic<float>> backs(plan.grid.count());
   for (std::atomic<float>& back : backs) back.store(std::numeric_limits<float>::infinity(), std::memory_order_relaxed);
@@ -483,7 +459,6 @@ OccluderGrid::OccluderGrid(const SeenMesh& seen, const View& view, bool keeps_al
   occluders_ = std::move(plan.occluders);
 }
 
-/// Fills each cell with its entries, the nearest first.
 void OccluderGrid::fill_cells(const GridPlan& plan) {
   const std::vector<std::atomic<float>> backs = backs_of(plan);
   const auto list = [&](std::size_t i, const auto& add) {
@@ -535,26 +510,21 @@ void OccluderGrid::fill_sides(const GridPlan& plan) {
   }
   for (Buffer<float>& values : sides_) values = Buffer<float>(count + kPadding, 0.0f);
   if (count == 0) return;
-  const auto set_side = [&](std::size_t i, int k, const CellDepth::Side& side) {
-    sides_[3 * k][i] = side.a;
-    sides_[3 * k + 1][i] = side.b;
-    sides_[3 * k + 2][i] = side.c;
-  };
   parallel_for(plan.execution, cells, kCellsPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t cell = begin; cell < end; ++cell) {
       if (!has_sides(cell)) continue;
-      const Square square = cells_.square(cell);
+      const glm::dvec2 corner(cells_.square(cell).x, cells_.square(cell).y);
       for (std::size_t i = 0; i < first_[cell + 1] - first_[cell]; ++i) {
         const Footprint& footprint = plan.footprints[numbers_[first_[cell] + i]];
-        const std::size_t entry = first_side_[cell] + i;
-        if (plan.is_near(footprint)) {
-          for (int k = 0; k < ScreenSides::count; ++k)
-            set_side(entry, k, {0, 0, std::numeric_limits<float>::infinity()});
-          continue;
-        }
         const CellDepth depth = plan.depth_of(footprint.triangle);
-        for (int k = 0; k < 3; ++k) set_side(entry, k, depth.side(k, {square.x, square.y}));
-        set_side(entry, 3, depth.plane({square.x, square.y}));
+        for (int k = 0; k < ScreenSides::count; ++k) {
+          const CellDepth::Side side = plan.is_near(footprint) ? CellDepth::nowhere_outside
+                                       : k < 3                 ? depth.side(k, corner)
+                                                               : depth.plane(corner);
+          sides_[3 * k][first_side_[cell] + i] = side.a;
+          sides_[3 * k + 1][first_side_[cell] + i] = side.b;
+          sides_[3 * k + 2][first_side_[cell] + i] = side.c;
+        }
       }
     }
   });

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Repeats the arithmetic of hidden_by() and of the bounds of exact_vector.h, operation by operation, so that every lane
-// has the same bits as these functions.
-//
-// Boxes and sides are compared in floats, in units of cells, sixteen at a time. This only excludes occluders. The
-// remaining ones are compared with the edge in doubles, eight at a time, with bounds on the errors of all four
-// functions. Each of them hides nothing, hides an interval for certain, or is left open.
+// Boxes and sides are floats in cells, sixteen at a time; they only exclude occluders. The others are compared with the
+// edge in doubles, eight triangles at a time. Each hides nothing, hides an interval for certain, or is left open. These
+// operations are those of hidden_by() and of the bounds of exact_vector.h, so that every lane has the same bits.
 
 #include "lines/hiding/occluder.h"
 
@@ -27,7 +24,6 @@ using M = hn::Mask<D>;
 using DF = hn::CappedTag<float, 16>;
 
 using Vector3 = Lanes3<V>;
-
 using LaneNormals = BoundedNormals<V>;
 
 /// Values of functions, with masks that tell whose signs are certain.
@@ -48,13 +44,12 @@ struct Values {
   }
 };
 
-/// The part of the edge that remains after the functions so far.
+/// The part of the edge that is left so far.
 struct Rest {
   V begin, end;
   M is_gone, is_open;
 
-  /// where_positive() for vectors. `along` says whether an edge that lies wholly in the plane is removed, kept, or left
-  /// undecided.
+  /// where_positive() for vectors. `along`: whether an edge that lies in the plane is removed, kept, or left undecided.
   enum class Along { gone, kept, open };
   template <Along along>
   HWY_INLINE void Keep(const Values& a, const Values& b) {
@@ -70,7 +65,6 @@ struct Rest {
     begin = hn::IfThenElse(rises, hn::Max(begin, root), begin);
     end = hn::IfThenElse(falls, hn::Min(end, root), end);
   }
-  HWY_INLINE bool IsAllGone() const { return hn::AllTrue(D(), is_gone); }
 };
 
 struct CornerLanes {
@@ -108,7 +102,7 @@ HWY_INLINE void Ask(const OccluderBatch& batch, const SightedEdge& edge, const S
     }
     // A turn has the opposite sign of the product with the plane's normal.
     const auto keep_within = [&](const CornerLanes& p, const CornerLanes& q, V sign) HWY_ATTR {
-      if (rest.IsAllGone()) return;
+      if (hn::AllTrue(D(), rest.is_gone)) return;
       const LaneNormals side(sight.is_parallel() ? axis : Minus(p.place, axis), Minus(q.place, p.place));
       rest.Keep<needs_depth ? Rest::Along::kept : Rest::Along::open>(
           Values(side, Minus(from, p.place), sign, hn::Or(p.is_from, q.is_from), edge.slack),

@@ -12,18 +12,13 @@
 #include "lines/mesh/feature_edges.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <span>
 #include <string>
-#include <utility>
 
 #include "base/parallel.h"
 #include "lines/lists.h"
-#include "lines/mesh/mesh.h"
 
 namespace frontmost::lines_detail {
 namespace {
@@ -32,48 +27,37 @@ constexpr std::size_t kMostInLeaf = 8, kMostBeside = 64;
 constexpr double kShare = 1.0 / 16;  // the widest gap, as a share of an edge's length
 constexpr double kAcross = 0.5;      // least cosine of the angle between the directions into both triangles
 constexpr std::size_t kVerticesPerPart = 1024;
+constexpr float kNormalRounding = 2e-6f;    // of a product of two normals, at most
 constexpr double kWidestGap = 1.0 / 65536;  // share of the scene's diagonal: 1/200 mm on A4 paper
 
-class Classifier {
- public:
-  Classifier(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options)
-      : mesh_(seen.mesh),
-        seen_(seen),
-        surfaces_(surfaces),
-        options_(options),
-        cosine_(options.crease_angle ? std::cos(*options.crease_angle) : kLeastFoldCosine),
-        has_borders_(options.borders && !is_one_surface(surfaces.scene())) {}
+struct Classifier {
+  Classifier(const SeenMesh& its_seen, const Surfaces& its_surfaces, const LineOptions& its_options)
+      : mesh(its_seen.mesh),
+        seen(its_seen),
+        surfaces(its_surfaces),
+        options(its_options),
+        cosine(options.crease_angle ? std::cos(*options.crease_angle) : kLeastFoldCosine),
+        has_borders(options.borders && !is_one_surface(surfaces.scene())) {}
 
-  [[nodiscard]] const WeldedMesh& mesh() const { return mesh_; }
-  /// A surface continues across an edge only if the cosine of its turn at the edge is greater than this.
-  [[nodiscard]] double cosine() const { return cosine_; }
-  /// An edge of two triangles that are wound alike and face the same way is no feature if the cosine between their
-  /// SeenTriangle normals is greater than this.
+  /// An edge of two triangles wound and facing alike is no feature if the cosine of their normals is higher.
   [[nodiscard]] float plain_cosine() const {
-    if (has_borders_) return std::numeric_limits<float>::infinity();
-    if (!options_.creases) return -std::numeric_limits<float>::infinity();
+    if (has_borders) return std::numeric_limits<float>::infinity();
+    if (!options.creases) return -std::numeric_limits<float>::infinity();
     // A zero normal means that the normal is unknown. With a limit below 0, its edges would count as plain.
-    return std::max(float(cosine_), 0.0f) + kNormalRounding;
+    return std::max(float(cosine), 0.0f) + kNormalRounding;
   }
 
-  [[nodiscard]] std::optional<EdgeKind> open_kind() const {
-    return options_.boundaries ? std::optional(EdgeKind::boundary) : std::nullopt;
-  }
   [[nodiscard]] std::optional<EdgeKind> kind_of(const SidePair& pair) const {
     const int a = side_of(pair.first), b = side_of(pair.second);
-    if (options_.silhouettes && (a * b > 0 || (a == 0) != (b == 0))) return EdgeKind::silhouette;
-    if (has_borders_ && !(surface_of(pair.first.triangle) == surface_of(pair.second.triangle))) return EdgeKind::border;
-    if (options_.creases && is_crease(pair.first, pair.second)) return EdgeKind::crease;
+    if (options.silhouettes && (a * b > 0 || (a == 0) != (b == 0))) return EdgeKind::silhouette;
+    if (has_borders && !(surface_of(pair.first.triangle) == surface_of(pair.second.triangle))) return EdgeKind::border;
+    if (options.creases && is_crease(pair.first, pair.second)) return EdgeKind::crease;
     return std::nullopt;
   }
 
   [[nodiscard]] SurfaceOf surface_of(std::uint32_t triangle) const {
-    const PrimitiveSource source = surfaces_.source(mesh_.ids[triangle]);
-    return {source.instance, surfaces_.scene().meshes[source.mesh].material_of(source.triangle)};
-  }
-
-  [[nodiscard]] SurfaceOfTriangle surface_of_triangle() const {
-    return [this](std::uint32_t triangle) { return surface_of(triangle); };
+    const PrimitiveSource source = surfaces.source(mesh.ids[triangle]);
+    return {source.instance, surfaces.scene().meshes[source.mesh].material_of(source.triangle)};
   }
 
   /// The side of the edge, as seen from the eye, on which no triangle lies: 1 or -1; 0 if triangles lie on both sides.
@@ -87,36 +71,30 @@ class Classifier {
     return std::int8_t(-inner);
   }
 
- private:
   /// The side of the plane through the eye and the edge on which the triangle lies: 1 or -1, whatever its winding.
-  [[nodiscard]] int side_of(const Side& side) const { return seen_.facing[side.triangle] * (side.is_forward ? 1 : -1); }
+  [[nodiscard]] int side_of(const Side& side) const { return seen.facing[side.triangle] * (side.is_forward ? 1 : -1); }
 
   static bool is_one_surface(const Scene& scene) {
     return scene.instances.size() == 1 && scene.meshes[scene.instances[0].mesh].material_ids.empty();
   }
-  [[nodiscard]] bool is_in_plane(const Side& a, const Side& b) const {
-    const glm::uvec3& t = mesh_.triangles[a.triangle];
-    const Positions& at = mesh_.positions;
-    return FacePlane(at[t.x], at[t.y], at[t.z]).height(at[b.opposite]).sign == 0;
-  }
   [[nodiscard]] bool is_crease(const Side& a, const Side& b) const {
     // Neighbours that run along their edge the same way are wound against each other.
-    const glm::dvec3 n = normal_of(mesh_, a.triangle), m = normal_of(mesh_, b.triangle);
+    const glm::dvec3 n = normal_of(mesh, a.triangle), m = normal_of(mesh, b.triangle);
     const double along = glm::dot(n, m) * (a.is_forward == b.is_forward ? -1.0 : 1.0);
     const double size = std::sqrt(glm::dot(n, n) * glm::dot(m, m));
-    if (along > cosine_ * size) return false;
+    if (along > cosine * size) return false;
     if (along <= 0) return true;
-    return !is_in_plane(a, b);
+    const glm::uvec3& t = mesh.triangles[a.triangle];
+    const Positions& at = mesh.positions;
+    return FacePlane(at[t.x], at[t.y], at[t.z]).height(at[b.opposite]).sign != 0;
   }
 
-  const WeldedMesh& mesh_;
-  const SeenMesh& seen_;
-  const Surfaces& surfaces_;
-  const LineOptions& options_;
-  /// An upper bound on the rounding error of the dot product of two normals.
-  static constexpr float kNormalRounding = 2e-6f;
-  const double cosine_;
-  const bool has_borders_;
+  const WeldedMesh& mesh;
+  const SeenMesh& seen;
+  const Surfaces& surfaces;
+  const LineOptions& options;
+  const double cosine;  ///< the least of the angle by which a continuing surface turns
+  const bool has_borders;
 };
 
 /// A side that belongs to only one triangle.
@@ -124,9 +102,9 @@ struct OpenSide {
   /// `from` is a point, and the others are unit vectors; `ahead` points into the triangle.
   glm::dvec3 from, along, normal, ahead;
   double length;
-  std::uint32_t edge, triangle;
-  std::array<std::uint32_t, 2> ends;
-  Box box;
+  std::uint32_t number;  ///< of the edge, in the list of all edges
+  FeatureEdge edge;
+  Box box{};
 };
 
 OpenSide open_side(const WeldedMesh& mesh, const FeatureEdge& edge, std::uint32_t number) {
@@ -135,46 +113,35 @@ OpenSide open_side(const WeldedMesh& mesh, const FeatureEdge& edge, std::uint32_
   const double length = glm::distance(from, to);
   const glm::dvec3 along = (to - from) / length, normal = normal_of(mesh, edge.left);
   const glm::dvec3 to_tip = mesh.positions[tip] - from, across = to_tip - along * glm::dot(to_tip, along);
-  OpenSide side{from,
-                along,
-                normal / glm::length(normal),
-                across / glm::length(across),
-                length,
-                number,
-                edge.left,
-                {edge.from, edge.to},
-                {}};
-  side.box.include(mesh.positions.places()[edge.from]);
-  side.box.include(mesh.positions.places()[edge.to]);
+  OpenSide side{from, along, normal / glm::length(normal), across / glm::length(across), length, number, edge};
+  side.box.include(mesh.positions.places[edge.from]);
+  side.box.include(mesh.positions.places[edge.to]);
   return side;
 }
 
 /// Open sides in a binary tree of boxes.
-class SideTree {
- public:
-  explicit SideTree(std::vector<OpenSide> sides) : sides_(std::move(sides)), boxes_(1) { build(0, 0, sides_.size()); }
+struct SideTree {
+  explicit SideTree(std::vector<OpenSide> all) : sides(std::move(all)), boxes(1) { build(0, 0, sides.size()); }
 
-  [[nodiscard]] const std::vector<OpenSide>& sides() const { return sides_; }
   /// Visits sides whose boxes touch `box`, until `visit` returns false.
   template <class Visit>
   void visit_near(const Box& box, const Visit& visit) const {
-    (void)visit_node(0, 0, sides_.size(), box, visit);
+    (void)visit_node(0, 0, sides.size(), box, visit);
   }
 
- private:
   void build(std::size_t node, std::size_t begin, std::size_t end) {
-    if (node >= boxes_.size()) boxes_.resize(node + 1);
+    if (node >= boxes.size()) boxes.resize(node + 1);
     Box box;
-    for (std::size_t i = begin; i < end; ++i) box.include(sides_[i].box);
-    boxes_[node] = box;
+    for (std::size_t i = begin; i < end; ++i) box.include(sides[i].box);
+    boxes[node] = box;
     if (end - begin <= kMostInLeaf) return;
     const glm::vec3 size = box.high - box.low;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const auto place = [&](const OpenSide& side) { return side.box.low[axis] + side.box.high[axis]; };
     const std::size_t middle = begin + (end - begin) / 2;
-    std::nth_element(sides_.begin() + std::ptrdiff_t(begin), sides_.begin() + std::ptrdiff_t(middle),
-                     sides_.begin() + std::ptrdiff_t(end), [&](const OpenSide& a, const OpenSide& b) {
-                       return std::pair(place(a), a.edge) < std::pair(place(b), b.edge);
+    std::nth_element(sides.begin() + std::ptrdiff_t(begin), sides.begin() + std::ptrdiff_t(middle),
+                     sides.begin() + std::ptrdiff_t(end), [&](const OpenSide& a, const OpenSide& b) {
+                       return std::pair(place(a), a.number) < std::pair(place(b), b.number);
                      });
     build(2 * node + 1, begin, middle);
     build(2 * node + 2, middle, end);
@@ -187,18 +154,18 @@ class SideTree {
   template <class Visit>
   [[nodiscard]] bool visit_node(std::size_t node, std::size_t begin, std::size_t end, const Box& box,
                                 const Visit& visit) const {
-    if (!overlap(boxes_[node], box)) return true;
+    if (!overlap(boxes[node], box)) return true;
     if (end - begin <= kMostInLeaf) {
       for (std::size_t i = begin; i < end; ++i)
-        if (overlap(sides_[i].box, box) && !visit(sides_[i])) return false;
+        if (overlap(sides[i].box, box) && !visit(sides[i])) return false;
       return true;
     }
     const std::size_t middle = begin + (end - begin) / 2;
     return visit_node(2 * node + 1, begin, middle, box, visit) && visit_node(2 * node + 2, middle, end, box, visit);
   }
 
-  std::vector<OpenSide> sides_;
-  std::vector<Box> boxes_;
+  std::vector<OpenSide> sides;
+  std::vector<Box> boxes;
 };
 
 /// Whether the stretches cover the range from 0 to `length`, except for holes of at most `slack`.
@@ -212,30 +179,30 @@ bool cover(std::vector<std::pair<double, double>>& stretches, double length, dou
   return reached >= length - slack;
 }
 
-class Gaps {
- public:
-  Gaps(const SeenMesh& seen, const Classifier& classifier, double widest, std::vector<OpenSide> sides)
-      : seen_(seen), classifier_(classifier), widest_(widest), tree_(std::move(sides)) {}
-
-  [[nodiscard]] const std::vector<OpenSide>& sides() const { return tree_.sides(); }
+struct Gaps {
+  const SeenMesh& seen;
+  const Classifier& classifier;
+  const double most;  ///< the widest gap
+  const SideTree& tree;
 
   /// Whether `side` lies at a gap. If so, adds to `continued` the pairs of its vertices and the vertices across the
   /// gap.
   [[nodiscard]] bool is_one(const OpenSide& side, VertexPairs& continued) const {
-    const double widest = std::min(widest_, kShare * side.length);
+    const double widest = std::min(most, kShare * side.length);
     Box box = side.box;
     box.low -= glm::vec3(float(widest));
     box.high += glm::vec3(float(widest));
     std::vector<std::pair<double, double>> stretches;
     const std::size_t first = continued.size();
     std::size_t count = 0;
-    tree_.visit_near(box, [&](const OpenSide& other) {
-      if (other.edge == side.edge) return true;
+    tree.visit_near(box, [&](const OpenSide& other) {
+      if (other.number == side.number) return true;
       const auto stretch = stretch_beside(side, other, widest);
       if (stretch.first < stretch.second && goes_on(side, other)) {
         stretches.push_back(stretch);
-        for (const std::uint32_t own : side.ends)
-          for (const std::uint32_t its : other.ends) continued.emplace_back(std::minmax({own, its}));
+        for (const std::uint32_t own : {side.edge.from, side.edge.to})
+          for (const std::uint32_t its : {other.edge.from, other.edge.to})
+            continued.emplace_back(std::minmax({own, its}));
       }
       return ++count <= kMostBeside;
     });
@@ -244,7 +211,6 @@ class Gaps {
     return is_gap;
   }
 
- private:
   /// The stretch of `side` beside which `other` lies, as distances from the beginning of `side`; empty if there is
   /// none.
   static std::pair<double, double> stretch_beside(const OpenSide& side, const OpenSide& other, double widest) {
@@ -264,25 +230,18 @@ class Gaps {
 
   [[nodiscard]] bool goes_on(const OpenSide& side, const OpenSide& other) const {
     const double cosine = glm::dot(side.normal, other.normal);
-    const int facing = seen_.facing[side.triangle];
-    return glm::dot(side.ahead, other.ahead) < -kAcross && std::abs(cosine) > classifier_.cosine() && facing != 0 &&
-           facing == seen_.facing[other.triangle] * (cosine < 0 ? -1 : 1) &&
-           classifier_.surface_of(side.triangle) == classifier_.surface_of(other.triangle);
+    const std::uint32_t own = side.edge.left, its = other.edge.left;  // triangles
+    return glm::dot(side.ahead, other.ahead) < -kAcross && std::abs(cosine) > classifier.cosine &&
+           seen.facing[own] != 0 && seen.facing[own] == seen.facing[its] * (cosine < 0 ? -1 : 1) &&
+           classifier.surface_of(own) == classifier.surface_of(its);
   }
-
-  const SeenMesh& seen_;
-  const Classifier& classifier_;
-  const double widest_;
-  SideTree tree_;
 };
 
-/// Removes from `edges` the boundaries across which their surface continues. Other boundaries of the same object and
-/// material lie along the whole length of such a boundary. Their distance from it is at most `widest`, and also at most
-/// a sixteenth of its length. The triangles of these other boundaries lie across the gap, face the same way, and differ
-/// in direction by at most the classifier's angle. (Exporters tessellate each face by itself, so rims share no
-/// vertices.) If more than a third of all sides are open, the triangles form no surface, and all boundaries stay.
-/// \returns pairs of vertices on opposite sides of a gap, the lower vertex first, ascending. O(boundaries log
-/// boundaries); a boundary with more than 64 others beside it stays.
+/// Removes from `edges` the boundaries across which their surface continues: exporters tessellate each face by itself,
+/// so rims share no vertices. All along such a boundary lie others of the same object and material, within `widest` and
+/// a sixteenth of its length, at most 64. Their triangles are on the other side, face the same way and are turned by no
+/// more than the angle. Where more than a third of all sides are open there is no surface, and all boundaries stay.
+/// \returns pairs of a gap's vertices and those across it, the lower first, ascending. O(boundaries log boundaries).
 VertexPairs leave_out_gaps(const SeenMesh& seen, const Classifier& classifier, double widest, std::size_t triangles,
                            std::vector<FeatureEdge>& edges) {
   std::vector<OpenSide> sides;
@@ -290,10 +249,11 @@ VertexPairs leave_out_gaps(const SeenMesh& seen, const Classifier& classifier, d
     if (edges[i].kind == EdgeKind::boundary && edges[i].right == no_index && seen.facing[edges[i].left] != 0)
       sides.push_back(open_side(seen.mesh, edges[i], std::uint32_t(i)));
   if (sides.empty() || sides.size() > triangles) return {};
-  const Gaps gaps(seen, classifier, widest, std::move(sides));
+  const SideTree tree(std::move(sides));
+  const Gaps gaps{seen, classifier, widest, tree};
   VertexPairs continued;
   std::vector<bool> is_gap(edges.size(), false);
-  for (const OpenSide& side : gaps.sides()) is_gap[side.edge] = gaps.is_one(side, continued);
+  for (const OpenSide& side : tree.sides) is_gap[side.number] = gaps.is_one(side, continued);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < edges.size(); ++i)
     if (!is_gap[i]) edges[kept++] = edges[i];
@@ -303,40 +263,24 @@ VertexPairs leave_out_gaps(const SeenMesh& seen, const Classifier& classifier, d
   return continued;
 }
 
-/// Appends the edge from `vertex` to Corner::last() of corner j, if that edge is a feature. The star is paired.
-void add_feature(std::uint32_t vertex, std::span<const Corner> corners, std::size_t j, const Classifier& classifier,
-                 std::vector<FeatureEdge>& features) {
-  const WeldedMesh& mesh = classifier.mesh();
-  const std::uint32_t upper = corners[j].last(mesh);
-  std::size_t i = 0;
-  while (corners[i].next(mesh) != upper) ++i;
-  Side sides[2] = {{upper, corners[i].triangle(), corners[i].last(mesh), true},
-                   {upper, corners[j].triangle(), corners[j].next(mesh), false}};
-  if (sides[1].opposite < sides[0].opposite) std::swap(sides[0], sides[1]);
-  if (const std::optional<EdgeKind> kind = classifier.kind_of({sides[0], sides[1]}))
-    features.push_back({vertex, upper, sides[0].triangle, sides[1].triangle, *kind, classifier.outer_side(sides)});
-}
-
-/// Appends the features among the `asked` edges of a paired star.
+/// Appends the features among the edges to Corner::last() of the `asked` corners of a paired star.
 void add_features(std::uint32_t vertex, std::span<const Corner> corners, std::uint32_t asked,
                   const Classifier& classifier, std::vector<FeatureEdge>& features) {
+  const WeldedMesh& mesh = classifier.mesh;
   const std::size_t begin = features.size();
-  for (; asked != 0; asked &= asked - 1)
-    add_feature(vertex, corners, std::size_t(std::countr_zero(asked)), classifier, features);
+  for (; asked != 0; asked &= asked - 1) {
+    const Corner& before = corners[std::size_t(std::countr_zero(asked))];
+    const std::uint32_t upper = before.last(mesh);
+    std::size_t i = 0;
+    while (corners[i].next(mesh) != upper) ++i;
+    Side sides[2] = {{upper, corners[i].triangle(), corners[i].last(mesh), true},
+                     {upper, before.triangle(), before.next(mesh), false}};
+    if (sides[1].opposite < sides[0].opposite) std::swap(sides[0], sides[1]);
+    if (const std::optional<EdgeKind> kind = classifier.kind_of({sides[0], sides[1]}))
+      features.push_back({vertex, upper, sides[0].triangle, sides[1].triangle, *kind, classifier.outer_side(sides)});
+  }
   std::sort(features.begin() + std::ptrdiff_t(begin), features.end(),
             [](const FeatureEdge& a, const FeatureEdge& b) { return a.to < b.to; });
-}
-
-/// Sets `sides` to the sides of the edges from `vertex` to higher vertices, sorted by edge, then by opposite vertex.
-void find_sides(const WeldedMesh& mesh, std::uint32_t vertex, std::span<const Corner> corners,
-                std::vector<Side>& sides) {
-  sides.clear();
-  for (const Corner& corner : corners) {
-    const std::uint32_t next = corner.next(mesh), last = corner.last(mesh);
-    if (next > vertex) sides.push_back({next, corner.triangle(), last, true});
-    if (last > vertex) sides.push_back({last, corner.triangle(), next, false});
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key() < b.key(); });
 }
 
 struct OwnedSide {
@@ -347,18 +291,6 @@ struct OwnedSide {
 /// Sides with the same opposite vertex.
 using SidesOfCopy = std::span<const OwnedSide>;
 
-/// Splits sides into groups of copies. Precondition: `sides` are sorted by opposite vertex.
-std::vector<SidesOfCopy> copies_of(std::span<const OwnedSide> sides) {
-  std::vector<SidesOfCopy> all;
-  for (auto begin = sides.begin(); begin != sides.end();) {
-    const auto end =
-        std::find_if(begin, sides.end(), [&](const OwnedSide& s) { return s.side.opposite != begin->side.opposite; });
-    all.emplace_back(begin, end);
-    begin = end;
-  }
-  return all;
-}
-
 /// A pair with one side from each group: two sides of the same object and material if possible, else the first sides.
 SidePair pair_of(const SidesOfCopy& a, const SidesOfCopy& b) {
   for (const OwnedSide& one : a)
@@ -368,9 +300,13 @@ SidePair pair_of(const SidesOfCopy& a, const SidesOfCopy& b) {
 }
 
 /// Pairs the groups of copies and appends these pairs. \returns false, and appends none, if not every group can be
-/// paired.
+/// paired. Precondition: `sides` are sorted by opposite vertex.
 bool pair_up(std::span<const OwnedSide> sides, std::vector<SidePair>& pairs) {
-  const std::vector<SidesOfCopy> copies = copies_of(sides);
+  std::vector<SidesOfCopy> copies;
+  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+    while (end < sides.size() && sides[end].side.opposite == sides[begin].side.opposite) ++end;
+    copies.push_back(sides.subspan(begin, end - begin));
+  }
   if (copies.size() < 2) return false;
   // With two groups, their sizes do not matter.
   const auto centre = std::find_if(copies.begin(), copies.end(), [&](const SidesOfCopy& c) {
@@ -388,7 +324,7 @@ struct Drawn {
   std::uint32_t left, right;
 };
 
-/// How an edge with these pairs is drawn, if at all: once, with the kind that comes first in EdgeKind.
+/// An edge with several pairs is drawn once, by its first kind.
 std::optional<Drawn> first_of(std::span<const SidePair> pairs, const Classifier& classifier) {
   std::optional<Drawn> first;
   for (const SidePair& pair : pairs)
@@ -405,15 +341,24 @@ std::optional<Drawn> drawn_of(std::span<const Side> sides, std::span<const Side>
     const SidePair pair(distinct[0], distinct[1]);
     return first_of({&pair, 1}, classifier);
   }
-  if (distinct.size() > 2)
-    if (const auto pairs = paired_sides(sides, classifier.surface_of_triangle())) return first_of(*pairs, classifier);
-  const std::optional<EdgeKind> kind = classifier.open_kind();
-  if (!kind) return std::nullopt;
-  return Drawn{*kind, distinct[0].triangle, distinct.size() > 1 ? distinct[1].triangle : no_index};
+  if (distinct.size() > 2) {
+    const auto surface_of = [&](std::uint32_t triangle) { return classifier.surface_of(triangle); };
+    if (const auto pairs = paired_sides(sides, surface_of)) return first_of(*pairs, classifier);
+  }
+  if (!classifier.options.boundaries) return std::nullopt;
+  return Drawn{EdgeKind::boundary, distinct[0].triangle, distinct.size() > 1 ? distinct[1].triangle : no_index};
 }
 
-/// Appends the features and twins that are found among `sides`, which come from find_sides().
-void add_features(std::span<const Side> sides, std::uint32_t v, const Classifier& classifier, Features& features) {
+/// Appends the features among the edges from a vertex to higher ones. `sides` is memory.
+void add_features(std::uint32_t v, std::span<const Corner> corners, const Classifier& classifier,
+                  std::vector<Side>& sides, Features& features) {
+  sides.clear();
+  for (const Corner& corner : corners) {
+    const std::uint32_t next = corner.next(classifier.mesh), last = corner.last(classifier.mesh);
+    if (next > v) sides.push_back({next, corner.triangle(), last, true});
+    if (last > v) sides.push_back({last, corner.triangle(), next, false});
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.key() < b.key(); });
   std::vector<Side> distinct;
   for (auto begin = sides.begin(); begin != sides.end();) {
     const auto end = std::find_if(begin, sides.end(), [&](const Side& s) { return s.upper != begin->upper; });
@@ -424,7 +369,7 @@ void add_features(std::span<const Side> sides, std::uint32_t v, const Classifier
       else if (side->opposite > side->upper)  // each triangle counts at one of its three edges only
         features.twins.push_back(side->triangle);
     }
-    if (const std::optional<Drawn> drawn = drawn_of({begin, end}, distinct, classifier))
+    if (const std::optional<Drawn> drawn = drawn_of({&*begin, std::size_t(end - begin)}, distinct, classifier))
       features.edges.push_back(
           {v, begin->upper, drawn->left, drawn->right, drawn->kind, classifier.outer_side(distinct)});
     begin = end;
@@ -486,8 +431,7 @@ Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const Lin
       if (star.is_paired) {
         add_features(v, table[v], star.asked, classifier, found.edges);
       } else {
-        find_sides(seen.mesh, v, table[v], sides);
-        add_features(sides, v, classifier, found);
+        add_features(v, table[v], classifier, sides, found);
       }
     }
     edges[begin / kVerticesPerPart] = std::move(found.edges);

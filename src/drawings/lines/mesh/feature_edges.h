@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the edges of a mesh that are drawn. Gaps are not drawn: at a gap, two patches of one surface end beside each
-// other, and only rounding keeps them apart.
-//
-//    edge  =  (lower vertex, upper vertex)  +  the triangles on its left and right, or none  +  why it is drawn
-//
-// Later steps, which find false creases and gaps, only remove edges from this list.
+// The edges of a mesh that are drawn, except gaps: places where patches of one surface end beside each other, and only
+// rounding keeps them apart. Later steps, which find false creases and gaps, only remove edges from the list.
 #pragma once
 
 #include <functional>
@@ -32,8 +28,7 @@ struct Features {
   std::vector<FeatureEdge> edges;    ///< in the order of their vertices
   VertexPairs continued;             ///< pairs of vertices across gaps, from leave_out_gaps()
   std::vector<std::uint32_t> twins;  ///< triangles that repeat the corners of an earlier triangle; ascending
-  /// For each vertex, Star::is_spread: no two triangles of the vertex meet except in their common corners. 0 means
-  /// unknown; an empty list means unknown for all.
+  /// By vertex, Star::is_spread: no two of its triangles meet except in their common corners. 0 or empty: unknown.
   Buffer<std::uint8_t> is_spread;
 };
 
@@ -62,11 +57,10 @@ struct SurfaceOf {
 using SurfaceOfTriangle = std::function<SurfaceOf(std::uint32_t triangle)>;
 
 /// Pairs the sides of an edge with more than two opposite vertices, so that each pair belongs to one surface. Sides of
-/// one object, such as a housing, are paired first. Two different sides of the object form a pair. Among more sides, a
-/// side that occurs as often as all others together is paired with each of them. The remaining sides of all objects are
-/// then paired by the same rules. `sides` are all sides of one edge, copies included, sorted by opposite vertex; their
-/// winding does not matter. O(sides log sides).
-/// \returns none if a side has no partner, or more than one possible partner: different surfaces meet at the edge.
+/// one object are paired first: two are a pair; a side that occurs as often as all others together is paired with each
+/// of them. The sides that remain are then paired with each other by the same rules. `sides` are all sides of one edge,
+/// copies included, sorted by opposite vertex; their winding does not matter. O(sides log sides). \returns none if a
+/// side has no partner, or more than one possible partner: different surfaces meet at the edge.
 [[nodiscard]] std::optional<std::vector<SidePair>> paired_sides(std::span<const Side> sides,
                                                                 const SurfaceOfTriangle& surface_of);
 
@@ -74,8 +68,8 @@ using SurfaceOfTriangle = std::function<SurfaceOf(std::uint32_t triangle)>;
 /// rounding.
 [[nodiscard]] bool meet_at_gap(const WeldedMesh& mesh, const VertexPairs& continued, std::uint32_t a, std::uint32_t b);
 
-/// The cosine of 15 degrees. A fold is an edge at which a surface turns. Smaller folds are never creases, because half
-/// the edges of a scanned model are folds of some degrees.
+/// The cosine of 15 degrees. Smaller folds are never creases, because half the edges of a scanned model are folds of
+/// some degrees.
 inline constexpr double kLeastFoldCosine = 0.96592582628906831;
 
 /// Removes from `edges` the creases that the surfaces on both sides do not confirm, by hysteresis as in J. Canny. A

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each place gets one number, which all vertices of all instances at that place share; triangles refer to these
-// numbers. Threads count the items of each list in parts before they write them, so no list grows and no thread waits.
+// All lists are counted in parts before they are written, so no list grows and no thread waits.
 //
-//    fillers that share sides      A-M-B, A-N-M ...      lie on one line (a seam); found by uniting fillers
+//    fillers that share sides      A-M-B, A-N-M ...      one line (a seam) each, found by uniting fillers
 //    corners of the seam           A N M B               sorted along any axis on which two of them differ
 //    a triangle with the side A-B  becomes A-N-C, N-M-C, M-B-C
-//
-// An exact sign tells whether a triangle has no area. The order of corners along a line is the order of one coordinate.
 #include "lines/mesh/mesh.h"
 
 #include <algorithm>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,9 +24,8 @@ namespace {
 
 constexpr std::size_t kWeldedPerPart = 8192;
 
-/// Splits the range from `begin` to `end`, which counts over all instances, into one piece for each instance, and calls
-/// visit(instance, first, last) for each piece. `firsts` are the first numbers of the instances, followed by the count
-/// of all.
+/// Calls visit(instance, first, last) for the pieces of a range over all instances within each instance. `firsts` are
+/// the instances' first numbers, followed by the count of all.
 template <class Visitor>
 void visit_instances(const std::vector<std::size_t>& firsts, std::size_t begin, std::size_t end, const Visitor& visit) {
   auto i = std::size_t(std::upper_bound(firsts.begin(), firsts.end(), begin) - firsts.begin()) - 1;
@@ -125,8 +122,8 @@ Buffer<glm::uvec3> corners_of(const Surfaces& surfaces, const Buffer<std::uint32
 }
 
 constexpr std::size_t kSeamsPerPoll = 1 << 18;
-/// At most kMostAdded triangles are added for each triangle of the mesh, and kAlwaysAdded more. Usual seams stay far
-/// below this limit, but n sides that overlap on one line could add n^2 triangles.
+/// The most triangles that are added: kMostAdded for each, and kAlwaysAdded. Sides that overlap along a line could add
+/// as many as the square of their number.
 constexpr std::size_t kMostAdded = 4, kAlwaysAdded = 1 << 16;
 
 bool is_straight(const Positions& at, const glm::uvec3& t) {
@@ -136,18 +133,6 @@ bool is_straight(const Positions& at, const glm::uvec3& t) {
     if (std::abs(rounded.value[axis]) > rounded.error[axis]) return false;
   const ExactVector normal = cross(difference(b, a), difference(c, a));
   return normal[0].sign() == 0 && normal[1].sign() == 0 && normal[2].sign() == 0;
-}
-
-/// The numbers of the triangles without area, ascending.
-std::vector<std::uint32_t> fillers_of(const WeldedMesh& mesh, const Buffer<std::int8_t>& facing,
-                                      const Execution& execution) {
-  std::vector<std::uint32_t> fillers;
-  for (std::uint32_t i = 0; i < facing.size(); ++i) {
-    if (i % kSeamsPerPoll == 0) check_cancelled(execution);
-    // A triangle without area is seen edge-on from every eye.
-    if (facing[i] == 0 && is_straight(mesh.positions, mesh.triangles[i])) fillers.push_back(i);
-  }
-  return fillers;
 }
 
 /// The seams of a mesh: the lines on which fillers lie, with the sides of these fillers.
@@ -179,15 +164,11 @@ class Seams {
     const auto found = std::lower_bound(sides_.begin(), sides_.end(), side);
     return found != sides_.end() && !(side < *found) && is_open_[found->seam] ? found->seam : no_index;
   }
-  struct Range {
-    std::size_t first, last;  ///< `last` is one past the end
-  };
-  /// The indices, as for corner(), of the seam's corners that lie strictly between its corners `a` and `b`.
-  [[nodiscard]] Range between(std::uint32_t seam, std::uint32_t a, std::uint32_t b) const {
-    const std::size_t i = place_of(seam, a), j = place_of(seam, b);
-    return {std::min(i, j) + 1, std::max(i, j)};
+  /// The seam's corners strictly between two of its corners.
+  [[nodiscard]] std::span<const std::uint32_t> between(std::uint32_t seam, std::uint32_t a, std::uint32_t b) const {
+    const auto [first, last] = std::minmax({place_of(seam, a), place_of(seam, b)});
+    return {corners_.data() + first + 1, last - first - 1};
   }
-  [[nodiscard]] std::uint32_t corner(std::size_t place) const { return corners_[place]; }
   [[nodiscard]] std::size_t count() const { return axes_.size(); }
   void leave(std::uint32_t seam) { is_open_[seam] = false; }
 
@@ -201,9 +182,8 @@ class Seams {
   /// The number of each filler's line. Fillers with a common side are on one line, because they share two points.
   [[nodiscard]] std::vector<std::uint32_t> number_lines(std::size_t fillers) {
     DisjointSets<> lines(fillers);
-    for (std::size_t s = 1; s < sides_.size(); ++s) {
+    for (std::size_t s = 1; s < sides_.size(); ++s)
       if (!(sides_[s - 1] < sides_[s])) lines.join(sides_[s - 1].seam, sides_[s].seam);
-    }
     std::vector<std::uint32_t> numbers(fillers);
     std::uint32_t count = 0;
     for (std::uint32_t i = 0; i < fillers; ++i) numbers[i] = lines.is_leader(i) ? count++ : numbers[lines.leader_of(i)];
@@ -264,8 +244,7 @@ Seamed seamed(const Seams& seams, const glm::uvec3& t) {
   return {t, {seams.of(t.x, t.y), seams.of(t.y, t.z), seams.of(t.z, t.x)}};
 }
 
-/// Leaves seams open if closing them would add too many triangles.
-/// \returns how many triangles the other seams add.
+/// Leaves seams open if closing them would add too many triangles. \returns how many triangles the other seams add.
 std::size_t leave_crowded(Seams& seams, const WeldedMesh& mesh, const Execution& execution) {
   std::vector<std::size_t> added(seams.count(), 0);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -274,8 +253,7 @@ std::size_t leave_crowded(Seams& seams, const WeldedMesh& mesh, const Execution&
     const Seamed triangle = seamed(seams, t);
     for (int k = 0; k < 3; ++k) {
       if (triangle.seams[k] == no_index) continue;
-      const Seams::Range range = seams.between(triangle.seams[k], t[k], t[k == 2 ? 0 : k + 1]);
-      added[triangle.seams[k]] += range.last - range.first;
+      added[triangle.seams[k]] += seams.between(triangle.seams[k], t[k], t[k == 2 ? 0 : k + 1]).size();
     }
   }
   const std::size_t most = kMostAdded * mesh.triangles.size() + kAlwaysAdded;
@@ -294,22 +272,22 @@ std::size_t leave_crowded(Seams& seams, const WeldedMesh& mesh, const Execution&
 template <class Add>
 void split(const Seams& seams, const Seamed& triangle, const Add& add) {
   int side = -1;
-  Seams::Range at{0, 0};
+  std::span<const std::uint32_t> at;
   std::pair<std::uint32_t, std::uint32_t> lowest;
   for (int k = 0; k < 3; ++k) {
     if (triangle.seams[k] == no_index) continue;
     const std::uint32_t a = triangle.corners[k], b = triangle.corners[k == 2 ? 0 : k + 1];
-    const Seams::Range range = seams.between(triangle.seams[k], a, b);
-    const std::pair<std::uint32_t, std::uint32_t> ends{std::min(a, b), std::max(a, b)};
-    if (range.first == range.last || (side >= 0 && lowest < ends)) continue;
-    side = k, at = range, lowest = ends;
+    const std::span<const std::uint32_t> between = seams.between(triangle.seams[k], a, b);
+    const std::pair<std::uint32_t, std::uint32_t> ends = std::minmax({a, b});
+    if (between.empty() || (side >= 0 && lowest < ends)) continue;
+    side = k, at = between, lowest = ends;
   }
   if (side < 0) {
     add(triangle.corners);
     return;
   }
   const int next = side == 2 ? 0 : side + 1;
-  const std::uint32_t middle = seams.corner(at.first + (at.last - at.first) / 2);
+  const std::uint32_t middle = at[at.size() / 2];
   // The new side between the halves lies on no seam.
   Seamed from = triangle, to = triangle;
   from.corners[next] = middle;
@@ -362,7 +340,12 @@ WeldedMesh weld(const Surfaces& surfaces, const Execution& execution) {
 }
 
 bool close_seams(WeldedMesh& mesh, const Buffer<std::int8_t>& facing, const Execution& execution) {
-  const std::vector<std::uint32_t> fillers = fillers_of(mesh, facing, execution);
+  std::vector<std::uint32_t> fillers;
+  for (std::uint32_t i = 0; i < facing.size(); ++i) {
+    if (i % kSeamsPerPoll == 0) check_cancelled(execution);
+    // A triangle without area is seen edge-on from every eye.
+    if (facing[i] == 0 && is_straight(mesh.positions, mesh.triangles[i])) fillers.push_back(i);
+  }
   if (fillers.empty()) return false;
   Seams seams(mesh, fillers, execution);
   leave_out(mesh, fillers);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The welded mesh of a scene: vertices at one place are one vertex, and seams are closed. Also the properties of its
-// triangles in a view, and the triangles at each vertex.
+// All triangles of a scene over vertices that are shared wherever they coincide, with closed seams; their properties in
+// a view; and the triangles at each vertex.
 //
-//          C                  C            A filler A-M-B has its corners on one line, and therefore no area. It
-//         / .                /|.           closes the long side A-B against the short sides A-M and M-B. The filler is
-//        /   .              / | .          removed, and the triangle A-B-C beside it is split at M. So each short side
-//       A--M--B      ->    A--M--B         has one neighbour again, and surfaces continue across it.
+//          C                  C         A filler A-M-B has its corners on one line, and no area: it was put there to
+//         / .                /|.        close the long side A-B against the two short ones. The filler is removed, and
+//        /   .              / | .       the triangle A-B-C beside it is split at M. So every side has one neighbour
+//       A--M--B      ->    A--M--B      again, and surfaces continue across it.
 #pragma once
+
+#include <limits>
 
 #include "frontmost/scene.h"
 #include "geometry/buckets.h"
@@ -15,16 +17,13 @@
 namespace frontmost::lines_detail {
 
 /// Vertex positions in world space, stored as floats, which halves the memory traffic.
-class Positions {
- public:
-  Positions() = default;
-  explicit Positions(Buffer<glm::vec3> places) : places_(std::move(places)) {}
-  [[nodiscard]] std::size_t size() const { return places_.size(); }
-  [[nodiscard]] glm::dvec3 operator[](std::size_t vertex) const { return glm::dvec3(places_[vertex]); }
-  [[nodiscard]] const Buffer<glm::vec3>& places() const { return places_; }
+struct Positions {
+  Buffer<glm::vec3> places;
 
- private:
-  Buffer<glm::vec3> places_;
+  Positions() = default;
+  explicit Positions(Buffer<glm::vec3> its_places) : places(std::move(its_places)) {}
+  [[nodiscard]] std::size_t size() const { return places.size(); }
+  [[nodiscard]] glm::dvec3 operator[](std::size_t vertex) const { return glm::dvec3(places[vertex]); }
 };
 
 struct WeldedMesh {
@@ -39,12 +38,9 @@ struct WeldedMesh {
 [[nodiscard]] WeldedMesh weld(const Surfaces& surfaces, const Execution& execution);
 
 /// Removes the triangles whose corners lie exactly on one line (fillers), and splits triangles beside them at the
-/// corners on their sides. For example, a long side A-B, a filler A-M-B and the short sides A-M and M-B become two
-/// edges, A-M and M-B, each of two triangles. The pieces of a triangle take its position and its id. A seam stays open,
-/// but loses its fillers, if its splits would make the mesh more than five times as large: n overlapping sides on one
-/// line could add n^2 triangles. `facing` holds Sight::facing() of the mesh's triangles, for any view. O(triangles)
-/// without fillers, else O(triangles log fillers).
-/// \returns whether there were fillers; else the mesh is unchanged.
+/// corners on their sides. Pieces come where their triangle was, with its id. A seam that would make more than five
+/// times as many triangles stays open, without its fillers. `facing` is of the mesh, for any view. O(triangles) without
+/// fillers, else O(triangles log fillers). \returns whether there were fillers; else the mesh is unchanged.
 [[nodiscard]] bool close_seams(WeldedMesh& mesh, const Buffer<std::int8_t>& facing, const Execution& execution);
 
 /// The properties of a triangle that need no neighbours.
@@ -59,10 +55,9 @@ struct SeenTriangle {
   /// Sight::facing()
   [[nodiscard]] int facing() const { return int(bits >> kFacingShift) - 1; }
   /// Bit i, for i from 0 to 2: seen along axis i, the triangle certainly turns left. Bit 3 + i: it certainly turns
-  /// right. 0 if nothing is known.
+  /// right.
   [[nodiscard]] std::uint32_t turns() const { return bits & 63; }
-  /// Bit i: seen along axis i, the next vertex lies below the corner and the last one above, so a walk around the
-  /// corner rises in this triangle. Valid if turns() knows how the triangle turns along axis i.
+  /// Bit i, if the triangle turns: seen along axis i, a walk around the corner passes here from below it to above it.
   [[nodiscard]] std::uint32_t climbs(std::uint32_t corner) const { return bits >> (6 + 3 * corner) & 7; }
 };
 
@@ -81,6 +76,23 @@ struct SeenMesh {
   const glm::uvec3& t = mesh.triangles[triangle];
   const glm::dvec3 at = mesh.positions[t.x];
   return glm::cross(mesh.positions[t.y] - at, mesh.positions[t.z] - at);
+}
+
+/// The vector at unit length; `otherwise` if it has no direction.
+[[nodiscard]] inline glm::dvec3 unit_of(const glm::dvec3& v, const glm::dvec3& otherwise = glm::dvec3(0)) {
+  const double length = glm::length(v);
+  return length > 0 && length < std::numeric_limits<double>::infinity() ? v / length : otherwise;
+}
+
+/// Where a linear function from 0 to 1 is 0 that has these values at its ends, with opposite signs. The values may be
+/// wrong by rounding; their signs are not.
+[[nodiscard]] inline double root_between(const Signed& at_0, const Signed& at_1) {
+  const double a = std::abs(at_0.value), b = std::abs(at_1.value);
+  return a + b > 0 ? a / (a + b) : 0.5;
+}
+/// The place at t from 0 to 1 between two others, computed from the nearer one, so that both ends are exact.
+[[nodiscard]] inline glm::dvec3 place_between(const glm::dvec3& from, const glm::dvec3& to, double t) {
+  return t <= 0.5 ? from + (to - from) * t : to + (from - to) * (1 - t);
 }
 
 /// The triangle's corner that is neither a nor b.

@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Computes the properties of triangles in a view, and the stars of vertices.
+// The properties of triangles in a view, and the stars of vertices.
 //
 //    bits of a triangle   turns left along x, y, z | turns right along x, y, z | climbs, by corner and axis | facing
 //
-// A triangle's facing is the side of its plane on which the eye is, which follows from the normal. All bits are
-// computed in doubles, without branches, for as many triangles as there are lanes. Facings that rounding leaves open
-// are computed again, exactly, one by one.
+// All bits are computed in doubles, without branches, for as many triangles as there are lanes. Facings that rounding
+// leaves open are computed again, exactly, one by one.
 //
-//    corners of a vertex     next:  b c d a        Corner i spans the angle from `next` to `last` at the vertex. Its
-//                            last:  c d a b        partner is the corner whose `next` is the `last` of corner i: it
-//                                                  belongs to the triangle across that edge. In a closed star every
-//                                                  corner has one partner.
+//    corners of a vertex     next:  b c d a    Corner i runs from `next` to `last` around the vertex. Its partner, the
+//                            last:  c d a b    triangle beyond that edge, is the corner whose `next` is its `last`.
 
 #include "base/parallel.h"
 #include "lines/mesh/mesh.h"
@@ -42,7 +39,7 @@ HWY_INLINE void Load(const WeldedMesh& mesh, std::size_t begin, std::size_t end,
   for (std::size_t i = 0; i < hn::Lanes(D()); ++i) {
     const glm::uvec3& t = mesh.triangles[begin + i < end ? begin + i : end - 1];
     for (int k = 0; k < 3; ++k) {
-      const glm::vec3& p = mesh.positions.places()[t[k]];
+      const glm::vec3& p = mesh.positions.places[t[k]];
       places[3 * k][i] = p.x, places[3 * k + 1][i] = p.y, places[3 * k + 2][i] = p.z;
     }
   }
@@ -50,7 +47,7 @@ HWY_INLINE void Load(const WeldedMesh& mesh, std::size_t begin, std::size_t end,
   for (int k = 0; k < 3; ++k) corners[k] = {load(3 * k), load(3 * k + 1), load(3 * k + 2)};
 }
 
-/// SeenTriangle::bits of one triangle per lane, set one bit after another.
+/// SeenTriangle::bits.
 struct Bits {
   hn::Vec<DU> all;
   int next = 0;
@@ -80,7 +77,6 @@ HWY_INLINE void AppendClimbs(const Vector3 (&p)[3], Bits& bits) {
       bits.Append(hn::Not(hn::Or(is_below[k][axis], is_below[k == 0 ? 2 : k - 1][axis])));
 }
 
-/// SeenTriangle::bits of one triangle per lane.
 HWY_INLINE hn::Vec<DU> BitsOfTriangles(const Vector3 (&p)[3], const BoundedNormals<V>& normal, const Sight& sight) {
   const D d;
   Bits bits{hn::Zero(DU())};

@@ -1,50 +1,43 @@
 // SPDX-License-Identifier: Apache-2.0
 // Segments are joined to chains. Then corners are removed from the chains, and runs of chords become arcs.
 //
-// A cone decides which corners are removed. Its tip is the last corner that stays, and it contains the directions of
-// the lines that pass every later point within the tolerance. An arc runs through the first, the middle and the last
-// corner of its run. The step by which a run grows is doubled while the run fits an arc, and then halved again and
-// again.
+// Corners are removed with a cone from the last corner that stayed. The cone holds the directions that pass every point
+// since then at less than the tolerance. An arc runs through the first, the middle and the last corner of a run.
 //
 //            . - '       p4 lies outside of the cone: p3 becomes
 //    p0 <====.  p2  p3   a corner, and a new cone begins there
 //            ' - .    p4
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <tuple>
 
 #include "lines/strokes/parts.h"
 
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr std::uint32_t none = no_index;
-
 /// An end of a segment: number 2 i for `from`, 2 i + 1 for `to`.
 struct SegmentEnd {
+  std::uint32_t rank;
   std::int64_t x, y;
-  std::uint32_t rank, number;
+  std::uint32_t number;
 
   [[nodiscard]] bool meets(const SegmentEnd& o) const { return rank == o.rank && x == o.x && y == o.y; }
-  friend bool operator<(const SegmentEnd& a, const SegmentEnd& b) {
-    return std::tie(a.rank, a.x, a.y, a.number) < std::tie(b.rank, b.x, b.y, b.number);
-  }
+  friend auto operator<=>(const SegmentEnd&, const SegmentEnd&) = default;
 };
 
-/// For each end, the only other end that it meets, or none.
+/// By end: the only other end that it meets, or no_index.
 std::vector<std::uint32_t> partners(const std::vector<LineSegment>& segments) {
   std::vector<SegmentEnd> ends;
   ends.reserve(2 * segments.size());
   for (std::size_t i = 0; i < segments.size(); ++i)
     for (int k = 0; k < 2; ++k) {
       const glm::dvec2& p = k == 0 ? segments[i].from : segments[i].to;
-      ends.push_back({std::llround(p.x * places_per_pixel), std::llround(p.y * places_per_pixel), segments[i].rank,
+      ends.push_back({segments[i].rank, std::llround(p.x * places_per_pixel), std::llround(p.y * places_per_pixel),
                       std::uint32_t(2 * i) + std::uint32_t(k)});
     }
   std::sort(ends.begin(), ends.end());
-  std::vector<std::uint32_t> partner(ends.size(), none);
+  std::vector<std::uint32_t> partner(ends.size(), no_index);
   for (std::size_t first = 0; first < ends.size();) {
     std::size_t last = first + 1;
     while (last < ends.size() && ends[last].meets(ends[first])) ++last;
@@ -57,8 +50,8 @@ std::vector<std::uint32_t> partners(const std::vector<LineSegment>& segments) {
   return partner;
 }
 
-/// Rotates a closed chain so that no arc and no straight line runs across its beginning. It then begins at its sharpest
-/// corner or, where all are blunt, at the end of its longest line.
+/// Rotates a closed chain so that no arc and no straight line runs across its beginning: to its sharpest corner or,
+/// where all are blunt, to the end of its longest line.
 void begin_at_corner(std::vector<glm::dvec2>& points) {
   constexpr double blunt = 0.866;  // the cosine of 30 degrees
   double least = blunt, longest = 0;
@@ -81,29 +74,25 @@ void begin_at_corner(std::vector<glm::dvec2>& points) {
 }
 
 /// The directions of the lines from `tip` that pass all points so far within the tolerance.
-class Cone {
- public:
-  explicit Cone(const glm::dvec2& tip) : tip_(tip) {}
-
+struct Cone {
   [[nodiscard]] bool holds(const glm::dvec2& p) const {
-    const glm::dvec2 d = p - tip_;
-    return is_open_ || (cross(right_, d) >= 0 && cross(d, left_) >= 0 && glm::dot(d, d) >= farthest_);
+    const glm::dvec2 d = p - tip;
+    return is_open || (cross(right, d) >= 0 && cross(d, left) >= 0 && glm::dot(d, d) >= farthest);
   }
   void narrow(const glm::dvec2& p, double tolerance) {
-    const glm::dvec2 d = p - tip_;
+    const glm::dvec2 d = p - tip;
     const double length = glm::length(d);
     if (length <= tolerance) return;
     const glm::dvec2 side = glm::dvec2(-d.y, d.x) * (tolerance / length);
-    if (is_open_ || cross(right_, d - side) > 0) right_ = d - side;
-    if (is_open_ || cross(d + side, left_) > 0) left_ = d + side;
-    farthest_ = length * length;  // so that a line that turns back keeps its corner
-    is_open_ = false;
+    if (is_open || cross(right, d - side) > 0) right = d - side;
+    if (is_open || cross(d + side, left) > 0) left = d + side;
+    farthest = length * length;  // so that a line that turns back keeps its corner
+    is_open = false;
   }
 
- private:
-  glm::dvec2 tip_, left_{0}, right_{0};
-  double farthest_ = 0;
-  bool is_open_ = true;
+  glm::dvec2 tip, left{0}, right{0};
+  double farthest = 0;
+  bool is_open = true;
 };
 
 constexpr std::size_t fewest_joins = 4;
@@ -119,6 +108,12 @@ constexpr double alike = 0.5;
 struct Circle {
   glm::dvec2 centre;
   double radius;
+
+  /// The angle from one point to another, in (-pi, pi].
+  [[nodiscard]] double turn_between(const glm::dvec2& a, const glm::dvec2& b) const {
+    const glm::dvec2 u = a - centre, v = b - centre;
+    return std::atan2(cross(u, v), glm::dot(u, v));
+  }
 };
 
 std::optional<Circle> circle_through(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
@@ -130,76 +125,28 @@ std::optional<Circle> circle_through(const glm::dvec2& a, const glm::dvec2& b, c
   return Circle{a + to_centre, glm::length(to_centre)};
 }
 
-/// The angle from one point of the circle to another, in (-pi, pi].
-double turn_between(const Circle& circle, const glm::dvec2& a, const glm::dvec2& b) {
-  const glm::dvec2 u = a - circle.centre, v = b - circle.centre;
-  return std::atan2(cross(u, v), glm::dot(u, v));
-}
-
-/// A run of corners, open or closed to a ring.
-class ChordRun {
- public:
-  ChordRun(const std::vector<glm::dvec2>& points, std::size_t first, std::size_t chords)
-      : points_(points), first_(first), chords_(chords) {}
-
-  /// Whether every chord lies within `tolerance` of the arc or is evenly stepped. Precondition: all corners lie within
-  /// the tolerance of the circle.
-  [[nodiscard]] bool is_like(const Circle& circle, double tolerance) const {
-    for (std::size_t i = 0; i < chords_; ++i) {
-      const double to_middle = glm::distance((corner(i) + corner(i + 1)) / 2.0, circle.centre);
-      if (circle.radius - to_middle > tolerance && !is_evenly_stepped(i)) return false;
-    }
-    return true;
-  }
-
- private:
-  [[nodiscard]] const glm::dvec2& corner(std::size_t i) const { return points_[(first_ + i) % points_.size()]; }
-  [[nodiscard]] double length(std::size_t chord) const { return glm::distance(corner(chord), corner(chord + 1)); }
-  [[nodiscard]] bool is_ring() const { return chords_ == points_.size(); }
-
-  [[nodiscard]] bool is_evenly_stepped(std::size_t chord) const {
-    const double least = alike * length(chord);
-    int found = 0;
-    for (std::size_t k = 1; k <= reach; ++k) {
-      if (is_ring() || chord >= k) found += length((chord + chords_ - k) % chords_) >= least;
-      if (is_ring() || chord + k < chords_) found += length((chord + k) % chords_) >= least;
-    }
-    return found >= fewest_alike;
-  }
-
-  const std::vector<glm::dvec2>& points_;
-  const std::size_t first_, chords_;
-};
-
-class ArcFinder {
- public:
-  ArcFinder(Chain& chain, double tolerance) : chain_(chain), points_(chain.points), tolerance_(tolerance) {}
-
+struct ArcFinder {
   void run() {
-    if (chain_.is_closed && make_circle()) return;
-    if (chain_.is_closed) points_.push_back(points_.front());
+    if (chain.is_closed && make_circle()) return;
+    if (chain.is_closed) points.push_back(points.front());
     std::vector<glm::dvec2> kept;
     std::size_t at = 0;
-    while (at + 1 < points_.size()) {
-      const std::size_t end = longest_run(at);
-      kept.push_back(points_[at]);
-      bulges_.push_back(0);
-      if (end > at) {
-        add_arc(at, end, kept);
-        at = end;
-      } else {
-        ++at;
-      }
+    while (at + 1 < points.size()) {
+      const std::size_t end =
+          longest_run(at, fewest_joins, points.size() - 1, [&](std::size_t last) { return fit(at, last).has_value(); });
+      kept.push_back(points[at]);
+      bulges.push_back(0);
+      if (end > at) add_arc(at, end, kept);
+      at = std::max(at + 1, end);
     }
-    if (!chain_.is_closed) {
-      kept.push_back(points_.back());
-      bulges_.push_back(0);
+    if (!chain.is_closed) {
+      kept.push_back(points.back());
+      bulges.push_back(0);
     }
-    points_ = std::move(kept);
-    chain_.bulges = std::move(bulges_);
+    points = std::move(kept);
+    chain.bulges = std::move(bulges);
   }
 
- private:
   struct Fit {
     Circle circle;
     double turn;
@@ -207,39 +154,44 @@ class ArcFinder {
 
   /// The arc through the corners from `first` to `last`, if they fit.
   [[nodiscard]] std::optional<Fit> fit(std::size_t first, std::size_t last) const {
-    const std::optional<Circle> circle = circle_through(points_[first], points_[(first + last) / 2], points_[last]);
+    const std::optional<Circle> circle = circle_through(points[first], points[(first + last) / 2], points[last]);
     if (!circle) return std::nullopt;
     const std::optional<double> turn = turn_along(*circle, first, last);
     if (!turn || std::abs(*turn) < least_turn || std::abs(*turn) > 6.2) return std::nullopt;
-    if (!ChordRun(points_, first, last - first).is_like(*circle, tolerance_)) return std::nullopt;
+    if (!follow(*circle, first, last - first)) return std::nullopt;
     return Fit{*circle, *turn};
   }
 
-  /// The angle around the circle from corner `first` to corner `last`. None if a corner is off the circle, is far from
-  /// the next corner, or turns back.
+  /// The angle around the circle. None if a corner is off the circle or far from the next.
   [[nodiscard]] std::optional<double> turn_along(const Circle& circle, std::size_t first, std::size_t last) const {
     double turn = 0;
     for (std::size_t i = first; i < last; ++i) {
-      if (std::abs(glm::distance(points_[i], circle.centre) - circle.radius) > tolerance_) return std::nullopt;
-      const double by = turn_between(circle, points_[i], points_[i + 1 == points_.size() ? 0 : i + 1]);
+      if (std::abs(glm::distance(points[i], circle.centre) - circle.radius) > tolerance) return std::nullopt;
+      const double by = circle.turn_between(points[i], points[i + 1 == points.size() ? 0 : i + 1]);
       if (std::abs(by) > widest_join || by * turn < 0) return std::nullopt;
       turn += by;
     }
     return turn;
   }
 
-  [[nodiscard]] std::size_t longest_run(std::size_t first) const {
-    const std::size_t most = points_.size() - 1;
-    std::size_t fits = first + fewest_joins;
-    if (fits > most || !fit(first, fits)) return first;
-    std::size_t step = fewest_joins;
-    while (fits < most && fit(first, std::min(most, fits + step))) {
-      fits = std::min(most, fits + step);
-      step *= 2;
+  /// Whether each of the chords from corner `first` on lies within the tolerance of the arc, or has a length like its
+  /// neighbours. Precondition: all corners lie within the tolerance of the circle. All chords of the chain are a ring.
+  [[nodiscard]] bool follow(const Circle& circle, std::size_t first, std::size_t chords) const {
+    const bool is_ring = chords == points.size();
+    const auto corner = [&](std::size_t i) { return points[(first + i) % points.size()]; };
+    const auto length = [&](std::size_t chord) { return glm::distance(corner(chord), corner(chord + 1)); };
+    for (std::size_t i = 0; i < chords; ++i) {
+      const double to_middle = glm::distance((corner(i) + corner(i + 1)) / 2.0, circle.centre);
+      if (!(circle.radius - to_middle > tolerance)) continue;
+      const double least = alike * length(i);
+      int found = 0;
+      for (std::size_t k = 1; k <= reach; ++k) {
+        if (is_ring || i >= k) found += length((i + chords - k) % chords) >= least;
+        if (is_ring || i + k < chords) found += length((i + k) % chords) >= least;
+      }
+      if (found < fewest_alike) return false;
     }
-    for (; step > 0; step /= 2)
-      if (fits + step <= most && fit(first, fits + step)) fits += step;
-    return fits;
+    return true;
   }
 
   /// Adds the arc of a run. An arc of more than a half circle is split in two, because formats differ in how they treat
@@ -247,62 +199,52 @@ class ArcFinder {
   void add_arc(std::size_t first, std::size_t last, std::vector<glm::dvec2>& kept) {
     const Fit arc = *fit(first, last);
     if (std::abs(arc.turn) <= std::numbers::pi) {
-      bulges_.back() = std::tan(arc.turn / 4);
+      bulges.back() = std::tan(arc.turn / 4);
       return;
     }
-    const glm::dvec2 begin = points_[first] - arc.circle.centre;
+    const glm::dvec2 begin = points[first] - arc.circle.centre;
     const double c = std::cos(arc.turn / 2), s = std::sin(arc.turn / 2);
-    bulges_.back() = std::tan(arc.turn / 8);
+    bulges.back() = std::tan(arc.turn / 8);
     kept.push_back(arc.circle.centre + glm::dvec2(begin.x * c - begin.y * s, begin.x * s + begin.y * c));
-    bulges_.push_back(std::tan(arc.turn / 8));
+    bulges.push_back(std::tan(arc.turn / 8));
   }
 
   bool make_circle() {
-    const std::size_t n = points_.size();
+    const std::size_t n = points.size();
     if (n < 18) return false;
-    const std::optional<Circle> circle = circle_through(points_[0], points_[n / 3], points_[2 * n / 3]);
+    const std::optional<Circle> circle = circle_through(points[0], points[n / 3], points[2 * n / 3]);
     if (!circle) return false;
     const std::optional<double> turn = turn_along(*circle, 0, n);
     if (!turn || std::abs(std::abs(*turn) - 2 * std::numbers::pi) > 1e-6) return false;
-    if (!ChordRun(points_, 0, n).is_like(*circle, tolerance_)) return false;
+    if (!follow(*circle, 0, n)) return false;
     const double bulge = *turn > 0 ? 1 : -1;
-    points_ = {points_[0], 2.0 * circle->centre - points_[0]};
-    chain_.bulges = {bulge, bulge};
+    points = {points[0], 2.0 * circle->centre - points[0]};
+    chain.bulges = {bulge, bulge};
     return true;
   }
 
-  Chain& chain_;
-  std::vector<glm::dvec2>& points_;
-  const double tolerance_;
-  std::vector<double> bulges_;
+  Chain& chain;
+  const double tolerance;
+  std::vector<glm::dvec2>& points = chain.points;
+  std::vector<double> bulges{};
 };
 
 }  // namespace
 
 std::vector<Chain> chained(const std::vector<LineSegment>& segments) {
-  const std::vector<std::uint32_t> partner = partners(segments);
-  std::vector<bool> is_used(segments.size());
   std::vector<Chain> chains;
   const auto place = [&](std::uint32_t end) { return end % 2 == 0 ? segments[end / 2].from : segments[end / 2].to; };
-  // Appends the chain from this end to the next end without a partner, or once around.
-  const auto follow = [&](std::uint32_t end) {
-    Chain chain;
-    chain.rank = segments[end / 2].rank;
-    chain.points.push_back(place(end));
-    while (end != none && !is_used[end / 2]) {
-      is_used[end / 2] = true;
+  for_each_chain(partners(segments), [&](const std::vector<std::uint32_t>& ends, bool is_closed) {
+    Chain& chain = chains.emplace_back();
+    chain.rank = segments[ends[0] / 2].rank;
+    chain.is_closed = is_closed;
+    chain.points.push_back(place(ends[0]));
+    for (const std::uint32_t end : ends) {
       chain.is_contour |= segments[end / 2].is_contour;
       chain.points.push_back(place(end ^ 1));
-      end = partner[end ^ 1];
     }
-    chain.is_closed = end != none;
-    if (chain.is_closed) chain.points.pop_back();
-    chains.push_back(std::move(chain));
-  };
-  for (std::uint32_t end = 0; end < partner.size(); ++end)
-    if (partner[end] == none && !is_used[end / 2]) follow(end);
-  for (std::uint32_t end = 0; end < partner.size(); end += 2)
-    if (!is_used[end / 2]) follow(end);
+    if (is_closed) chain.points.pop_back();
+  });
   std::stable_sort(chains.begin(), chains.end(), [](const Chain& a, const Chain& b) { return a.rank < b.rank; });
   return chains;
 }
@@ -315,11 +257,11 @@ void straighten(Chain& chain, double tolerance) {
     points.push_back(points.front());
   }
   std::vector<glm::dvec2> kept = {points.front()};
-  Cone cone(kept.back());
+  Cone cone{kept.back()};
   for (std::size_t i = 1; i < points.size(); ++i) {
     if (!cone.holds(points[i])) {
       kept.push_back(points[i - 1]);
-      cone = Cone(kept.back());
+      cone = {kept.back()};
     }
     cone.narrow(points[i], tolerance);
   }
@@ -330,7 +272,7 @@ void straighten(Chain& chain, double tolerance) {
 }
 
 void find_arcs(Chain& chain, double tolerance) {
-  if (chain.points.size() > fewest_joins) ArcFinder(chain, tolerance).run();
+  if (chain.points.size() > fewest_joins) ArcFinder{chain, tolerance}.run();
 }
 
 }  // namespace frontmost::lines_detail

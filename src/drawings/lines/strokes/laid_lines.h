@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // An index of the lines that are drawn so far, and the rule by which lines count as lying on each other.
 //
-//     a --------------------------      Two lines lie on each other if they run side by side, nearer to each other than
-//            b -----------------------  `apart` and in nearly the same direction. The later line is then drawn only
-//            |<-- overlap -->|          beyond the overlap, the stretch that lies on the earlier line.
+//     a --------------------------      Of two lines that run side by side, nearer to each other than `apart` and at
+//            b -----------------------  nearly one angle, the later one is drawn only where the earlier one is not. The
+//            |<-- overlap -->|          overlap is the stretch of a line on which another lies.
 //
-// Short lines are stored in the cells of a grid that they pass. Long lines would pass too many cells and are stored by
-// the infinite lines on which they lie.
+// Short lines are in the cells of a grid that they pass, long ones in an index of the infinite lines on which they lie.
 #pragma once
 
 #include <algorithm>
@@ -40,11 +39,9 @@ struct Stretch {
 
 class Nearness {
  public:
-  /// In pixels. A shorter overlap removes nothing, and a shorter remainder is not drawn: computed places of one point
-  /// differ by the rounding of floats, 1e-7 of some thousand pixels.
+  /// In pixels: shorter stretches are neither kept nor removed. Places of one point differ by the rounding of floats.
   static constexpr double shortest = 8e-3;
-  /// Greatest slope between a long line and a line that lies on it. Tiny pieces may point in any direction, but a
-  /// greater slope would make the lists of candidates too long.
+  /// Greatest slope between a long line and a line on it. Tiny pieces point anywhere, but would be too many.
   static constexpr double most_slope = 1.0 / 128;
   /// Greatest slope between short lines that lie on each other: at both ends of their overlap, their distance is at
   /// most a quarter of the overlap's length.
@@ -54,8 +51,7 @@ class Nearness {
 
   [[nodiscard]] double apart() const { return apart_; }
 
-  /// Greatest slope between a long line and a line of that length that lies on it. The slope may move the end of the
-  /// line by several times `apart`, because only a short part may lie on the long line.
+  /// The allowed slope to a long line. It moves the end by several times `apart`: the part on that line may be short.
   [[nodiscard]] double slope_within(double length) const { return std::min(8 * apart_ / length, most_slope); }
 
   /// The greatest distance between a line of that length and a line that lies on it.
@@ -136,22 +132,18 @@ void visit_likely(std::span<const BriefLine> lines, const SoughtLine& sought, co
 
 /// Long segments, indexed by the infinite line on which they lie.
 ///
-/// A grid does not suit long lines: they pass many cells, and in these cells many lines that they only cross. Instead,
-/// each line is prolonged until it meets two opposite sides of the drawing. The heights at which it meets them are the
-/// coordinates of a point in a dual plane. Lines that lie on each other have neighbouring points there; lines that
-/// cross or run in parallel have points far apart.
+/// A line on top of another meets two opposite sides of the drawing, prolonged, at nearly the same heights. These two
+/// heights are a point in a dual plane, in which lines that cross or run in parallel lie apart.
 ///
-///     drawing          dual plane     The plane is stored as a table of buckets. Lines that may lie on a line have
-///    |            _b    |   . b       points near its point. If a line turns about its middle, its point moves along
-///   a|  ___-----  |     |            a straight line.
+///     drawing          dual plane     The plane is a table of buckets. Lines that may lie on a line are near its
+///    |            _b    |   . b       point. A line that turns about its middle moves there along a straight way.
+///   a|  ___-----  |     |
 ///    |--          |     +------ a
 class LongLines {
  public:
   /// `low` and `high` are the corners of a box around all segments. Precondition: they differ.
   LongLines(const glm::dvec2& low, const glm::dvec2& high, const Nearness& near)
       : low_(low), extent_(std::max(high.x - low.x, high.y - low.y)), bucket_(extent_ / 512), near_(near) {}
-
-  [[nodiscard]] bool is_empty() const { return flat_.empty() && steep_.empty(); }
 
   void add(std::uint32_t number, const Line& segment) {
     const BriefLine brief(segment, number);
@@ -161,19 +153,17 @@ class LongLines {
     if (d.x <= 1.05 * d.y) steep_[key(heights(segment, 1))].push_back(brief);
   }
 
-  /// Calls visit(numbers) for segments that may lie on `segment`. Their lines pass near the middle of `segment`, and
-  /// differ in direction by at most the slope that Nearness allows for its length. \returns how many segments were
-  /// tested.
+  /// Calls visit(numbers) for segments whose lines turn from this one's by at most the angle that Nearness allows at
+  /// its length, and pass near its middle. \returns how many were tested.
   template <class Visit>
   std::size_t for_each(const Line& segment, const SoughtLine& sought, const Visit& visit) const {
-    const double slope = near_.slope_within(segment.length), off = near_.apart();
     const glm::dvec2 d = glm::abs(segment.to - segment.from);
     const int axis = d.y <= d.x ? 0 : 1;
     const Table& table = axis == 0 ? flat_ : steep_;
+    if (table.empty()) return 0;
     std::size_t looked_at = 0;
-    if (table.empty()) return looked_at;
-    // A line that turns about the middle moves by up to `spread` at the farther side of the drawing, and by `share`
-    // times as much at the nearer side.
+    const double slope = near_.slope_within(segment.length), off = near_.apart();
+    // A line that turns about the middle moves by up to `spread` at the farther side, by a share of it at the nearer.
     const glm::dvec2 at = heights(segment, axis);
     const double middle = ((segment.from[axis] + segment.to[axis]) / 2 - low_[axis]) / extent_;
     const int far = middle < 0.5 ? 1 : 0;
@@ -216,7 +206,7 @@ class LongLines {
 class LaidLines {
  public:
   /// Makes an empty index for pieces of `lines`. Precondition: there are lines.
-  LaidLines(const std::vector<Line>& lines, const Nearness& nearness) : LaidLines(Extent(lines), nearness) {}
+  LaidLines(const std::vector<Line>& lines, const Nearness& nearness);
 
   void add(std::uint32_t number, const Line& line) {
     if (line.is_long()) return long_.add(number, line);
@@ -226,13 +216,11 @@ class LaidLines {
     });
   }
 
-  /// Calls visit(numbers) for added lines that may lie on `line`; a line may be visited repeatedly. All short lines
-  /// with a stretch by Nearness::overlap() are visited, and the long lines that LongLines::for_each() finds. \returns
-  /// how many lines were tested.
+  /// Calls visit(numbers) for candidates, possibly repeatedly: all short lines with a stretch by Nearness::overlap(),
+  /// and the long ones that LongLines::for_each() finds. \returns how many were tested.
   ///
-  /// Cost: a few tests per line in usual drawings. But thousands of lines in one cell, such as the details of a model
-  /// that is seen very small, are tested each against each: 20 thousand lines take up to 1.4 s, and four times as many
-  /// take sixteen times as long.
+  /// Cost: a few tests per line in drawings. Thousands of lines in one cell, as of a model that is seen very small, are
+  /// tested each against each: 20 thousand take up to 1.4 s.
   template <class Visit>
   std::size_t for_each(const Line& line, const Visit& visit) const {
     const SoughtLine sought(line, near_);
@@ -242,23 +230,24 @@ class LaidLines {
       visit_likely(lines_[passed.cell], sought, visit);
       return true;
     });
-    return long_.is_empty() ? looked_at : looked_at + long_.for_each(line, sought, visit);
+    return looked_at + long_.for_each(line, sought, visit);
   }
 
  private:
   /// The bounding box of the lines, and the number and total length of the short ones.
   struct Extent {
     explicit Extent(const std::vector<Line>& lines);
+    [[nodiscard]] SquareGrid grid(double near) const;
     glm::dvec2 low{1e300}, high{-1e300};
     double short_length = 0, short_count = 0;
   };
-  LaidLines(const Extent& extent, const Nearness& nearness);
 
   /// All lines that count as lying on `line` are within this distance, which includes a margin.
   [[nodiscard]] double reach_of(const Line& line) const { return near_.reach_of(line.length + Nearness::shortest); }
 
   const Nearness near_;
-  SquareGrid cells_;
+  const Extent extent_;
+  const SquareGrid cells_;
   std::vector<std::vector<BriefLine>> lines_;  ///< the short lines by cell
   LongLines long_;
 };

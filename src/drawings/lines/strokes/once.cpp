@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coincident lines are drawn once: segments are added by rank, each without the stretches that earlier segments cover.
+// Coincident lines are drawn once: segments are added by rank, each without the stretches that earlier ones cover.
 //
 //    there already       ======      =====
 //    the new line    ----------------------------
 //    what is added   ----      ------     ------        its stretches that nothing covers yet
 //
-// Within a rank the first line stays whole. So the result depends only on the order of edges.
+// Within a rank the first line stays whole.
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -17,24 +17,23 @@
 namespace frontmost::lines_detail {
 namespace {
 
-/// A grid for `count` short lines of mean length `length`, with about one line in each cell. Cells have a least size,
-/// because otherwise the grid of a drawing that is a single point would have ten million cells along each side.
-SquareGrid grid_over(const glm::dvec2& low, const glm::dvec2& high, double count, double length, double near) {
-  const double side = std::max({high.x - low.x, high.y - low.y, 1e-6});
-  const double cell = std::max({length, side / std::sqrt(count), side / 4096, 8 * near});
-  const glm::ivec2 cells = glm::ivec2((high - low + 2 * near) / cell) + 1;
-  return {low - near, cell, cells.x, cells.y};
-}
-
 class OverlapRemover {
  public:
   /// Accepts pieces of `lines`. Precondition: there are lines.
   OverlapRemover(const std::vector<Line>& lines, double apart) : near_(apart), index_(lines, near_) {}
 
-  /// Appends the uncovered stretches of `line` to `fresh`.
-  /// \returns how many lines were compared with it.
+  /// Appends the uncovered stretches of `line` to `fresh`. \returns how many lines were compared with it.
   std::size_t lay(const Line& line, std::vector<LineSegment>& fresh) {
-    const std::size_t compared = find_covered(line);
+    covered_.clear();
+    ++asking_;
+    const std::size_t compared = index_.for_each(line, [&](std::span<const std::uint32_t> numbers) {
+      for (const std::uint32_t other : numbers) {
+        if (asked_[other] == asking_) continue;
+        asked_[other] = asking_;
+        const Stretch there = near_.overlap(line, laid_[other]);
+        if (there.end > there.begin) covered_.push_back(there);
+      }
+    });
     if (covered_.empty()) {
       add(line, fresh);
       return compared;
@@ -56,19 +55,6 @@ class OverlapRemover {
   }
 
  private:
-  std::size_t find_covered(const Line& line) {
-    covered_.clear();
-    ++asking_;
-    return index_.for_each(line, [&](std::span<const std::uint32_t> numbers) {
-      for (const std::uint32_t other : numbers) {
-        if (asked_[other] == asking_) continue;
-        asked_[other] = asking_;
-        const Stretch there = near_.overlap(line, laid_[other]);
-        if (there.end > there.begin) covered_.push_back(there);
-      }
-    });
-  }
-
   void add(const Line& line, std::vector<LineSegment>& fresh) {
     fresh.push_back(line);
     index_.add(std::uint32_t(laid_.size()), line);
@@ -96,12 +82,20 @@ LaidLines::Extent::Extent(const std::vector<Line>& lines) {
   }
 }
 
-LaidLines::LaidLines(const Extent& extent, const Nearness& nearness)
-    : near_(nearness), long_(extent.low, extent.high, nearness) {
-  const double count = std::max(extent.short_count, 1.0);
-  cells_ = grid_over(extent.low, extent.high, count, extent.short_length / count, near_.apart());
-  lines_.resize(cells_.count());
+/// A grid with about one short line to a cell. The least size of a cell matters for a drawing of one point.
+SquareGrid LaidLines::Extent::grid(double near) const {
+  const double count = std::max(short_count, 1.0), side = std::max({high.x - low.x, high.y - low.y, 1e-6});
+  const double cell = std::max({short_length / count, side / std::sqrt(count), side / 4096, 8 * near});
+  const glm::ivec2 cells = glm::ivec2((high - low + 2 * near) / cell) + 1;
+  return {low - near, cell, cells.x, cells.y};
 }
+
+LaidLines::LaidLines(const std::vector<Line>& lines, const Nearness& nearness)
+    : near_(nearness),
+      extent_(lines),
+      cells_(extent_.grid(near_.apart())),
+      lines_(cells_.count()),
+      long_(extent_.low, extent_.high, nearness) {}
 
 std::vector<LineSegment> draw_once(const std::vector<LineSegment>& segments, double apart, const Execution& execution) {
   std::vector<std::uint32_t> order(segments.size());

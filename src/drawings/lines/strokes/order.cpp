@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // An order of chains with little pen travel: the next chain begins at the nearest end.
 //
-//    ends left in a box    lowest     The search finds the end nearest to the pen; of equals, the one with the lowest
-//    [ 3 7 9 | 4 5 ]         3        number. A box is entered only if it may hold a nearer end, or one as near with a
-//      /         .                    lower number. When a chain is drawn, both of its ends leave the tree, and the
-//    [3 7 9]   [4 5]                  lowest numbers above them are updated. So crowded ends cost no more than others.
-#include <algorithm>
-#include <cmath>
-#include <limits>
+//    ends left in a box    lowest    Of equally near ends the lowest number is taken. A box is entered only if it may
+//    [ 3 7 9 | 4 5 ]         3       hold a nearer end, or one as near with a lower number. Both ends of a chain leave
+//      /         .                   the tree when it is drawn, and the lowest numbers are updated on the way up. So
+//    [3 7 9]   [4 5]                 crowds of ends cost no more than others.
 #include <tuple>
 
 #include "base/parallel.h"
@@ -38,9 +35,9 @@ class EndTree {
 
   /// The remaining end nearest to `from`; among equals, the lowest number. Precondition: at least one remains.
   [[nodiscard]] std::uint32_t nearest(const glm::dvec2& from) const {
-    Found best;
+    Found best(std::numeric_limits<double>::infinity(), no_end);
     visit(0, from, best);
-    return best.number;
+    return best.second;
   }
 
   void remove(std::uint32_t number) {
@@ -70,10 +67,7 @@ class EndTree {
     std::uint32_t lowest = no_end;
     bool is_leaf = true;
   };
-  struct Found {
-    double distance = std::numeric_limits<double>::infinity();
-    std::uint32_t number = no_end;
-  };
+  using Found = std::pair<double, std::uint32_t>;  ///< distance and number
 
   void build(std::size_t number, std::size_t begin, std::size_t end) {
     Node& node = nodes_[number];
@@ -104,8 +98,7 @@ class EndTree {
     if (node.is_leaf) {
       for (std::uint32_t i = node.begin; i < node.end; ++i) {
         const glm::dvec2 d = ends_[i].at - from;
-        const Found found{glm::dot(d, d), ends_[i].number};
-        if (std::tie(found.distance, found.number) < std::tie(best.distance, best.number)) best = found;
+        best = std::min(best, Found(glm::dot(d, d), ends_[i].number));
       }
       return;
     }
@@ -114,8 +107,7 @@ class EndTree {
     const int first = std::tie(distances[1], nodes_[below[1]].lowest) < std::tie(distances[0], nodes_[below[0]].lowest);
     for (const int i : {first, 1 - first}) {
       const std::uint32_t lowest = nodes_[below[i]].lowest;
-      if (lowest != no_end && std::tie(distances[i], lowest) < std::tie(best.distance, best.number))
-        visit(below[i], from, best);
+      if (lowest != no_end && Found(distances[i], lowest) < best) visit(below[i], from, best);
     }
   }
 

@@ -4,12 +4,12 @@
 //    parts of a drawing --> segments --draw_once--> --chained--> chains --without_short_ones-->
 //        --straighten--> --find_arcs--> --nearest_first--> Strokes
 //
-// Each step takes only the result of the step before: a chain stores its rank and its points, but not the edges from
-// which it was made.
+// A chain knows its rank and its points, but not the edges that it came from.
 #pragma once
 
+#include <algorithm>
 #include <glm/glm.hpp>
-#include <span>
+#include <limits>
 #include <vector>
 
 #include "frontmost/base.h"
@@ -44,6 +44,43 @@ inline constexpr double places_per_pixel = 1000;
 
 /// Joins segments of one rank wherever exactly two ends meet. Chains are sorted by rank, then by their first segment.
 [[nodiscard]] std::vector<Chain> chained(const std::vector<LineSegment>& segments);
+
+/// Calls visit(ends, is_closed) for each chain of edges: first the open ones, then those that are closed. The ends of
+/// edge i are 2 i and 2 i + 1; each is continued by its partner, or by none (no_index). `ends`: where a walk along the
+/// chain enters each of its edges.
+template <class Visit>
+void for_each_chain(const std::vector<std::uint32_t>& partner, const Visit& visit) {
+  std::vector<bool> is_used(partner.size() / 2);
+  std::vector<std::uint32_t> ends;
+  const auto follow = [&](std::uint32_t end) {
+    ends.clear();
+    for (; end != no_index && !is_used[end / 2]; end = partner[end ^ 1]) {
+      is_used[end / 2] = true;
+      ends.push_back(end);
+    }
+    visit(ends, end != no_index);
+  };
+  for (std::uint32_t end = 0; end < partner.size(); ++end)
+    if (partner[end] == no_index && !is_used[end / 2]) follow(end);
+  for (std::uint32_t end = 0; end < partner.size(); end += 2)
+    if (!is_used[end / 2]) follow(end);
+}
+
+/// The end of the longest run from `first` up to `most` for which fits(end) holds; `first` if the run of `least` steps
+/// does not fit. The run is lengthened by doubled steps while it fits, up to `largest_step`, and then by halved steps.
+template <class Fits>
+[[nodiscard]] std::size_t longest_run(std::size_t first, std::size_t least, std::size_t most, const Fits& fits,
+                                      std::size_t largest_step = std::numeric_limits<std::size_t>::max()) {
+  std::size_t end = first + least, step = least;
+  if (end > most || !fits(end)) return first;
+  while (end < most && step < largest_step && fits(std::min(most, end + step))) {
+    end = std::min(most, end + step);
+    step *= 2;
+  }
+  for (; step > 0; step /= 2)
+    if (end + step <= most && fits(end + step)) end += step;
+  return end;
+}
 
 /// Removes corners from a chain. Each removed corner lies within `tolerance` of the straight line that replaces it.
 void straighten(Chain& chain, double tolerance);

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rank is a number for the properties that all parts of a stroke have in common: whether they are hidden, whether
-// they are an outline, their kind, and their instance. Properties that the options ignore do not count. Sorting by rank
-// sorts by drawing order.
+// A rank is a number for everything that the parts of a stroke have in common, as far as the options ask for it:
+// whether they are hidden, whether they are an outline, their kind and their instance. Ranks are in drawing order.
 //
-//        a ________________ b          Short chain c ends in the air and is left out. Without short chain d, line e
-//              |    d/                 would end in the air, so d stays. Before any chain is left out, a grid of the
-//             c     /________ e        short chains' ends tells which lines these ends touch.
+//        a ________________ b          Short chain c ends in the air and is left out. Short chain d holds a line that
+//              |    d/                 would end in the air otherwise, so d stays.
+//             c     /________ e
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numbers>
-#include <tuple>
 
 #include "base/parallel.h"
 #include "frontmost/lines.h"
@@ -23,12 +20,6 @@ namespace frontmost {
 namespace {
 
 using namespace lines_detail;
-
-struct ShortChainRule {
-  double shortest;  ///< pixels: chains below this length are short
-  double touching;  ///< pixels: ends and lines at most this far apart touch
-  std::function<bool(std::uint32_t rank)> is_hidden;
-};
 
 double length_of(const Chain& chain) {
   double length = 0;
@@ -58,21 +49,29 @@ SquareGrid grid_over(const std::vector<glm::dvec2>& places, double least) {
 /// An end of a short chain that lies on another chain. The first end of chain i is number 2 i, its last end 2 i + 1.
 struct Touch {
   std::size_t end, chain;
-  bool is_at_end;  ///< the end meets an end of that chain
-
-  friend bool operator<(const Touch& a, const Touch& b) {
-    return std::tie(a.end, a.chain, b.is_at_end) < std::tie(b.end, b.chain, a.is_at_end);
-  }
+  bool is_within;  ///< it is no end of that chain
+  friend auto operator<=>(const Touch&, const Touch&) = default;
 };
 
+/// Leaves out short chains with an end that touches nothing, and short chains between lines that continue without them,
+/// unless they are contours. A short chain stays if other lines would end in the air without it. A hidden chain does
+/// not keep a visible one. Near-linear, unless most short chains lie within a thousandth of the drawing. Precondition:
+/// no arcs.
 class ShortChains {
  public:
-  ShortChains(std::vector<Chain>& chains, const ShortChainRule& rule, const Execution& execution)
-      : chains_(chains), rule_(rule), execution_(execution), is_short_(chains.size()), is_left_out_(chains.size()) {
-    for (std::size_t i = 0; i < chains.size(); ++i) is_short_[i] = length_of(chains[i]) < rule.shortest;
+  /// `strokes`: by rank, what the chains become.
+  ShortChains(std::vector<Chain>& chains, const std::vector<Stroke>& strokes, const StrokeOptions& options,
+              const Execution& execution)
+      : chains_(chains),
+        strokes_(strokes),
+        shortest_(options.shortest),
+        touching_(2 * options.apart),
+        execution_(execution),
+        is_short_(chains.size()),
+        is_left_out_(chains.size()) {
+    for (std::size_t i = 0; i < chains.size(); ++i) is_short_[i] = length_of(chains[i]) < shortest_;
   }
 
-  /// Leaves out short chains. \returns the others.
   std::vector<Chain> kept() {
     find_touches();
     std::vector<std::size_t> asked;
@@ -109,7 +108,7 @@ class ShortChains {
         }
     touched_by_.resize(chains_.size());
     if (ends.empty()) return;
-    const SquareGrid grid = grid_over(places, rule_.shortest);
+    const SquareGrid grid = grid_over(places, shortest_);
     const auto list = [&](std::size_t i, const auto& add) {
       grid.visit_along(places[i], places[i], 0, [&](const PassedCell& passed) {
         add(passed.cell, ends[i]);
@@ -123,9 +122,9 @@ class ShortChains {
       const std::size_t joins = chain.points.size() - (chain.is_closed ? 0 : 1);
       for (std::size_t k = 0; k < joins; ++k) {
         const glm::dvec2 &a = chain.points[k], &b = chain.points[k + 1 == chain.points.size() ? 0 : k + 1];
-        grid.visit_along(a, b, rule_.touching, [&](const PassedCell& passed) {
+        grid.visit_along(a, b, touching_, [&](const PassedCell& passed) {
           for (const std::uint32_t end : by_cell[passed.cell])
-            if (distance_to(place(end), a, b) <= rule_.touching) add_touch(end, i);
+            if (distance_to(place(end), a, b) <= touching_) add_touch(end, i);
           return true;
         });
       }
@@ -138,10 +137,11 @@ class ShortChains {
   }
 
   void add_touch(std::size_t end, std::size_t chain) {
+    const auto is_hidden = [&](std::size_t number) { return strokes_[chains_[number].rank].is_hidden; };
     // An end of a visible chain does not count as touching a hidden chain.
-    if (end / 2 == chain || (rule_.is_hidden(chains_[chain].rank) && !rule_.is_hidden(chains_[end / 2].rank))) return;
-    const auto is_near = [&](std::size_t other) { return glm::distance(place(end), place(other)) <= rule_.touching; };
-    touches_.push_back({end, chain, !chains_[chain].is_closed && (is_near(2 * chain) || is_near(2 * chain + 1))});
+    if (end / 2 == chain || (is_hidden(chain) && !is_hidden(end / 2))) return;
+    const auto is_near = [&](std::size_t other) { return glm::distance(place(end), place(other)) <= touching_; };
+    touches_.push_back({end, chain, chains_[chain].is_closed || !(is_near(2 * chain) || is_near(2 * chain + 1))});
   }
 
   /// Whether the short chain may be left out: one of its ends is in the air, or it is no contour and lies between lines
@@ -151,11 +151,11 @@ class ShortChains {
     bool is_link = true;
     for (std::size_t end = 2 * number; end < 2 * number + 2; ++end) {
       bool is_held = false, meets_end = false;
-      for (auto touch = std::lower_bound(touches_.begin(), touches_.end(), Touch{end, 0, true});
+      for (auto touch = std::lower_bound(touches_.begin(), touches_.end(), Touch{end, 0, false});
            touch != touches_.end() && touch->end == end; ++touch) {
         if (is_left_out_[touch->chain]) continue;
         is_held = true;
-        meets_end |= touch->is_at_end;
+        meets_end |= !touch->is_within;
       }
       if (!is_held) return true;
       is_link &= meets_end;
@@ -164,37 +164,51 @@ class ShortChains {
   }
 
   std::vector<Chain>& chains_;
-  const ShortChainRule& rule_;
+  const std::vector<Stroke>& strokes_;
+  const double shortest_,
+      touching_;  ///< pixels: chains below `shortest_` are short, ends and lines at most this far apart touch
   const Execution& execution_;
   std::vector<bool> is_short_, is_left_out_;
   std::vector<Touch> touches_;                        ///< ascending
   std::vector<std::vector<std::size_t>> touched_by_;  ///< by chain: the short chains that end on it
 };
 
-/// Leaves out short chains with an end that touches nothing, and short chains between lines that continue without them,
-/// unless they are contours. A short chain stays if other lines would end in the air without it. A hidden chain does
-/// not keep a visible one. Near-linear, unless most short chains lie within a thousandth of the drawing. Precondition:
-/// no arcs.
-std::vector<Chain> without_short_ones(std::vector<Chain> chains, const ShortChainRule& rule,
-                                      const Execution& execution) {
-  return ShortChains(chains, rule, execution).kept();
-}
-
-/// Reads the parts of a drawing according to the options of strokes.
-class PartReader {
+/// The segments of all parts with their ranks, and for each rank a stroke without points.
+class Ranked {
  public:
-  PartReader(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options)
-      : surfaces_(surfaces), drawing_(drawing), options_(options), cosine_(std::cos(options.grazing_angle)) {}
+  Ranked(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options)
+      : surfaces_(surfaces), drawing_(drawing), options_(options), cosine_(std::cos(options.grazing_angle)) {
+    std::map<std::uint64_t, std::pair<std::uint32_t, Stroke>> known;
+    std::vector<std::uint64_t> keys;
+    for (const DrawnPart& part : drawing.parts) {
+      keys.push_back(key_of(part));
+      known.try_emplace(keys.back(), 0, stroke(part));
+    }
+    for (auto& [key, entry] : known) {
+      entry.first = std::uint32_t(strokes.size());
+      strokes.push_back(entry.second);
+    }
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      const DrawnPart& part = drawing.parts[i];
+      if (!is_drawn(part)) continue;
+      const EdgeKind kind = drawing.edges[part.edge].kind;
+      segments.push_back({part.from, part.to, known.find(keys[i])->second.first,
+                          kind == EdgeKind::silhouette || kind == EdgeKind::boundary});
+    }
+  }
 
+  std::vector<LineSegment> segments;
+  std::vector<Stroke> strokes;
+
+ private:
   /// Whether the part gets a stroke.
   [[nodiscard]] bool is_drawn(const DrawnPart& part) const {
     if (part.hidden_by == 0) return true;
     return options_.with_hidden && (options_.grazing_angle == 0 || !is_grazing(drawing_.edges[part.edge]));
   }
 
-  /// A number for the properties that all parts of a stroke have in common. Lines of lower keys are drawn above lines
-  /// of higher keys: outlines have the lowest keys, hidden lines the highest.
-  [[nodiscard]] std::uint64_t key(const DrawnPart& part) const {
+  /// The common properties of a stroke's parts, in the order of ranks: outlines come first, hidden lines last.
+  [[nodiscard]] std::uint64_t key_of(const DrawnPart& part) const {
     const DrawnEdge& edge = drawing_.edges[part.edge];
     std::uint64_t key = part.hidden_by != 0;
     key = key << 1 | (options_.by_outline && !part.is_outline);
@@ -207,7 +221,6 @@ class PartReader {
     return {edge.kind, part.hidden_by != 0, options_.by_outline && part.is_outline, instance_of(edge), 0, 0, false};
   }
 
- private:
   [[nodiscard]] std::uint32_t instance_of(const DrawnEdge& edge) const {
     const PrimitiveId id = edge.left != no_primitive ? edge.left : edge.right;
     return id == no_primitive ? no_index : surfaces_.source(id).instance;
@@ -232,46 +245,15 @@ class PartReader {
 };
 
 void check(const StrokeOptions& options) {
-  if (!(options.apart >= 0.002 && options.apart <= 1))
-    throw Error(ErrorCode::bad_argument, "strokes",
-                "the greatest distance of lines that count as one must be from 0.002 to 1 pixel");
-  if (!(options.tolerance >= 1e-4 && options.tolerance <= 1))
-    throw Error(ErrorCode::bad_argument, "strokes", "the tolerance must be from 0.0001 to 1 pixel");
-  if (!(options.arc_tolerance >= 0 && options.arc_tolerance <= 100))
-    throw Error(ErrorCode::bad_argument, "strokes", "the tolerance of arcs must be from 0 to 100 pixels");
-  if (!(options.shortest >= 0 && options.shortest <= 1e4))
-    throw Error(ErrorCode::bad_argument, "strokes", "the shortest stroke must be from 0 to 10000 pixels");
-  if (!(options.grazing_angle >= 0 && options.grazing_angle <= std::numbers::pi / 2))
-    throw Error(ErrorCode::bad_argument, "strokes", "the grazing angle must be from 0 to pi/2");
-}
-
-/// The segments of all parts with their ranks, and for each rank a stroke without points.
-struct Ranked {
-  std::vector<LineSegment> segments;
-  std::vector<Stroke> strokes;
-};
-
-Ranked ranked(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options) {
-  const PartReader reader(surfaces, drawing, options);
-  std::map<std::uint64_t, std::pair<std::uint32_t, Stroke>> known;
-  std::vector<std::uint64_t> keys(drawing.parts.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    keys[i] = reader.key(drawing.parts[i]);
-    known.try_emplace(keys[i], 0, reader.stroke(drawing.parts[i]));
-  }
-  Ranked result;
-  for (auto& [key, entry] : known) {
-    entry.first = std::uint32_t(result.strokes.size());
-    result.strokes.push_back(entry.second);
-  }
-  for (std::size_t i = 0; i < keys.size(); ++i) {
-    const DrawnPart& part = drawing.parts[i];
-    if (!reader.is_drawn(part)) continue;
-    const EdgeKind kind = drawing.edges[part.edge].kind;
-    result.segments.push_back({part.from, part.to, known.find(keys[i])->second.first,
-                               kind == EdgeKind::silhouette || kind == EdgeKind::boundary});
-  }
-  return result;
+  const auto check_range = [](double value, double least, double most, const char* reason) {
+    if (!(value >= least && value <= most)) throw Error(ErrorCode::bad_argument, "strokes", reason);
+  };
+  check_range(options.apart, 0.002, 1,
+              "the greatest distance of lines that count as one must be from 0.002 to 1 pixel");
+  check_range(options.tolerance, 1e-4, 1, "the tolerance must be from 0.0001 to 1 pixel");
+  check_range(options.arc_tolerance, 0, 100, "the tolerance of arcs must be from 0 to 100 pixels");
+  check_range(options.shortest, 0, 1e4, "the shortest stroke must be from 0 to 10000 pixels");
+  check_range(options.grazing_angle, 0, std::numbers::pi / 2, "the grazing angle must be from 0 to pi/2");
 }
 
 void append(const Chain& chain, const Stroke& like, bool with_arcs, Strokes& all) {
@@ -293,19 +275,15 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
   check(options);
   const IeeeScope ieee;
   report_progress(execution, "strokes", 0);
-  const Ranked parts = ranked(surfaces, drawing, options);
+  const Ranked parts(surfaces, drawing, options);
   std::vector<Chain> chains = chained(draw_once(parts.segments, options.apart, execution));
-  // A chain that stays close to its beginning is seen as a point. Such chains are left over where two tessellations of
-  // one circle pass through each other.
+  // Where two tessellations of one circle pass through each other, chains are left over that are seen as points.
   std::erase_if(chains, [&](const Chain& chain) {
     return std::all_of(chain.points.begin(), chain.points.end(),
                        [&](const glm::dvec2& p) { return glm::distance(chain.points.front(), p) < options.apart; });
   });
   report_progress(execution, "strokes", 0.6);
-  if (options.shortest > 0) {
-    const auto is_hidden = [&](std::uint32_t rank) { return parts.strokes[rank].is_hidden; };
-    chains = without_short_ones(std::move(chains), {options.shortest, 2 * options.apart, is_hidden}, execution);
-  }
+  if (options.shortest > 0) chains = ShortChains(chains, parts.strokes, options, execution).kept();
   parallel_for(execution, chains.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       straighten(chains[i], options.tolerance);

@@ -7,8 +7,7 @@
 //      .--<'                       tip on the circle
 //     (  o  )
 //
-// A leader costs its length, and more for every line that it crosses. The cheapest free place is taken. The largest
-// sizes go first, because their leaders have the longest ways around inner circles.
+// A leader costs its length, and more for every line that it crosses. The cheapest free place is taken.
 #include "sheets/dimensions/dimensions.h"
 
 #include <algorithm>
@@ -34,7 +33,6 @@ struct SeenCircle {
   double radius;      ///< millimetres on the page
 };
 
-/// The extent of a view along one of its axes.
 struct Extent {
   double low, high;                 ///< on the page
   double size;                      ///< in units of the scene
@@ -42,7 +40,6 @@ struct Extent {
 };
 
 struct MeasuredView {
-  bool is_empty = true;
   PageBox box;                        ///< the box of all drawn lines
   std::vector<SeenCircle> circles;    ///< seen along their axes, and drawn to at least a fifth
   std::vector<const Round*> undrawn;  ///< cylinders that are seen along their axes, but drawn less
@@ -53,10 +50,22 @@ struct MeasuredView {
     const Projection& p = camera.projection;
     millimetres_ = camera.width / (p.right - p.left) * view.sheet->millimetres_per_pixel;
     const DrawingBounds drawn = bounds_of(*view.drawing, true);
-    is_empty = drawn.is_empty();
-    if (is_empty) return;
+    if (drawn.is_empty()) return;
     box = {view.sheet->on_page(drawn.low), view.sheet->on_page(drawn.high)};
-    if (view.rounds != nullptr) find_circles();
+    if (view.rounds == nullptr) return;
+    for (const Round& prism : view.rounds->prisms)
+      if (is_seen_along(prism)) prisms.push_back(&prism);
+    const std::vector<double> lengths = drawn_lengths(*view.rounds, *view.drawing, view.with_hidden);
+    for (std::size_t i = 0; i < lengths.size(); ++i) {
+      const Round& round = view.rounds->rounds[i];
+      if (round.kind == RoundKind::revolved) continue;  // its largest circle is no edge
+      if (!is_seen_along(round)) continue;
+      const double radius = round.radius * millimetres_;
+      if (lengths[i] * view.sheet->millimetres_per_pixel >= least_drawn * round.turn * radius)
+        circles.push_back({&round, on_page(round.from), radius});
+      else if (round.kind == RoundKind::cylinder)
+        undrawn.push_back(&round);
+    }
   }
 
   /// The extent along axis 0 (to the right) or 1 (upwards). Rounds reach farther than the corners of their polygons.
@@ -115,22 +124,6 @@ struct MeasuredView {
   }
 
  private:
-  void find_circles() {
-    for (const Round& prism : view_.rounds->prisms)
-      if (is_seen_along(prism)) prisms.push_back(&prism);
-    const std::vector<double> lengths = drawn_lengths(*view_.rounds, *view_.drawing, view_.with_hidden);
-    for (std::size_t i = 0; i < lengths.size(); ++i) {
-      const Round& round = view_.rounds->rounds[i];
-      if (round.kind == RoundKind::revolved) continue;  // its largest circle is no edge
-      if (!is_seen_along(round)) continue;
-      const double radius = round.radius * millimetres_;
-      if (lengths[i] * view_.sheet->millimetres_per_pixel >= least_drawn * round.turn * radius)
-        circles.push_back({&round, on_page(round.from), radius});
-      else if (round.kind == RoundKind::cylinder)
-        undrawn.push_back(&round);
-    }
-  }
-
   [[nodiscard]] bool is_seen_along(const Round& round) const {
     return glm::length(glm::cross(round.axis, view_.drawing->view.forward())) <= square;
   }
@@ -144,13 +137,11 @@ constexpr double extension_overshoot = 2;  // beyond the dimension line
 constexpr double first_distance = 10;      // distance of a dimension line from the view
 constexpr double text_distance = 1;        // distance of a number from its line, and from everything else
 
-/// Draws into the groups of a layer, and registers lines and texts as obstacles.
+/// Registers everything drawn as obstacles.
 class DimensionPen {
  public:
   DimensionPen(const DimensionOptions& options, Obstacles& obstacles)
-      : options_(options), obstacles_(obstacles), lines_{"", options.pen}, texts_{"", text_pen(options.text_height)} {
-    texts_.pen.color = options.pen.color;
-  }
+      : options_(options), obstacles_(obstacles), texts_{"", text_pen(options.text_height)} {}
 
   void line(const glm::dvec2& from, const glm::dvec2& to) {
     const glm::dvec2 ends[] = {from, to};
@@ -175,7 +166,7 @@ class DimensionPen {
   }
 
   [[nodiscard]] double width_of(std::string_view text) const { return text_width(text, options_.text_height); }
-  [[nodiscard]] double arrow_length() const { return 12 * options_.pen.width; }
+  [[nodiscard]] double arrow_length() const { return 12 * lines_.pen.width; }
 
   /// The box of a level text above a place, with some room around it.
   [[nodiscard]] PageBox box_of(std::string_view text, const glm::dvec2& at, TextAlign align) const {
@@ -195,7 +186,7 @@ class DimensionPen {
  private:
   const DimensionOptions& options_;
   Obstacles& obstacles_;
-  PageGroup lines_, texts_;
+  PageGroup lines_{"", Pen()}, texts_;
 };
 
 constexpr double least_turn = 190 * std::numbers::pi / 180;  // a round of less is an arc, and has a radius instead
@@ -234,17 +225,13 @@ bool is_rim(const SeenCircle& circle, const std::vector<SeenCircle>& all) {
 const std::string diameter_sign = "\u2300";
 
 /// Places the diameters of a sheet, each once.
-class Diameters {
- public:
-  Diameters(const DimensionOptions& options, DimensionPen& pen, const Obstacles& obstacles)
-      : options_(options), pen_(pen), obstacles_(obstacles) {}
-
+struct Diameters {
   /// Marks a cylinder and its continuations as dimensioned. \returns false if the cylinder was marked before.
   bool take(const Round& round) {
-    const bool is_new = std::none_of(taken_.begin(), taken_.end(), [&](const Round& other) {
+    const bool is_new = std::none_of(taken.begin(), taken.end(), [&](const Round& other) {
       return is_same_radius(other, round) && is_coaxial(other, round);
     });
-    if (is_new) taken_.push_back(round);
+    if (is_new) taken.push_back(round);
     return is_new;
   }
 
@@ -255,23 +242,22 @@ class Diameters {
       const std::size_t count = group.circles.size();
       const std::string text = count > 1 ? std::to_string(count) + "\u00d7" + group.text : group.text;
       std::optional<Leader> leader;
-      if (placed_ < most_diameters) leader = best_leader(group, text);
+      if (placed < most_diameters) leader = best_leader(group, text);
       if (!leader) {
         ++all.left_out;
         continue;
       }
-      ++placed_;
+      ++placed;
       ++all.count;
-      pen_.line(leader->tip, leader->knee);
-      pen_.line(leader->knee, leader->end);
-      pen_.arrow(leader->tip, glm::normalize(leader->tip - leader->knee));
+      pen.line(leader->tip, leader->knee);
+      pen.line(leader->knee, leader->end);
+      pen.arrow(leader->tip, glm::normalize(leader->tip - leader->knee));
       const double side = leader->align == TextAlign::left ? 1 : -1;
-      pen_.text(text, leader->knee + glm::dvec2(side * text_distance, 0), leader->align);
+      pen.text(text, leader->knee + glm::dvec2(side * text_distance, 0), leader->align);
     }
   }
 
-  /// Counts the cylinders of a view that got no diameter because no view draws them, or because they are prisms. Call
-  /// this after all views are added.
+  /// Counts cylinders without a diameter, because no view draws them or they are prisms. Call it after all add().
   void count_missing(const MeasuredView& view, Dimensions& all) {
     const auto count = [&](const std::vector<const Round*>& rounds, std::size_t& number) {
       std::size_t looked_at = 0;
@@ -282,7 +268,6 @@ class Diameters {
     count(view.prisms, all.prisms);
   }
 
- private:
   struct Group {
     std::string text;
     std::vector<SeenCircle> circles;  ///< at different places
@@ -304,8 +289,8 @@ class Diameters {
       auto group = std::find_if(groups.begin(), groups.end(),
                                 [&](const Group& g) { return is_same_radius(*g.circles[0].round, *circle.round); });
       if (group == groups.end()) {
-        const double number = 2 * circle.round->radius * options_.numbers_per_unit;
-        groups.push_back({diameter_sign + dimension_text(number, options_.decimals), {circle}});
+        const double number = 2 * circle.round->radius * options.numbers_per_unit;
+        groups.push_back({diameter_sign + dimension_text(number, options.decimals), {circle}});
         continue;
       }
       const bool is_there = std::any_of(group->circles.begin(), group->circles.end(), [&](const SeenCircle& c) {
@@ -323,7 +308,7 @@ class Diameters {
   [[nodiscard]] std::optional<Leader> best_leader(const Group& group, std::string_view text) const {
     constexpr int degrees[] = {45, 135, 315, 225, 60, 120, 300, 240, 30, 150, 330, 210};
     std::optional<Leader> best;
-    const double shelf = pen_.width_of(text) + 2 * text_distance;
+    const double shelf = pen.width_of(text) + 2 * text_distance;
     for (std::size_t i = 0; i < std::min(group.circles.size(), most_tried); ++i) {
       const SeenCircle& circle = group.circles[i];
       for (const int angle : degrees) {
@@ -331,27 +316,27 @@ class Diameters {
         const glm::dvec2 out(std::cos(radians), -std::sin(radians));
         const glm::dvec2 tip = circle.centre + circle.radius * out;
         const double side = out.x > 0 ? 1 : -1;
-        int crossed = obstacles_.crossings({tip + 0.1 * out, tip + nearest_knee * out});
+        int crossed = obstacles.crossings({tip + 0.1 * out, tip + nearest_knee * out});
         for (double way = nearest_knee; way <= farthest_knee; way += knee_step) {
           const double cost = way + cost_of_crossing * crossed;
           if (crossed > most_crossed || (best && cost >= best->cost)) break;
           const glm::dvec2 knee = tip + way * out, end = knee + glm::dvec2(side * shelf, 0);
           const TextAlign align = side > 0 ? TextAlign::left : TextAlign::right;
-          PageBox box = pen_.box_of(text, knee + glm::dvec2(side * text_distance, 0), align);
+          PageBox box = pen.box_of(text, knee + glm::dvec2(side * text_distance, 0), align);
           box.high.y += 2 * text_distance;  // the shelf, and room below it
-          if (obstacles_.is_free(box)) best = Leader{tip, knee, end, align, cost};
-          crossed += obstacles_.crossings({knee, knee + knee_step * out});
+          if (obstacles.is_free(box)) best = Leader{tip, knee, end, align, cost};
+          crossed += obstacles.crossings({knee, knee + knee_step * out});
         }
       }
     }
     return best;
   }
 
-  const DimensionOptions& options_;
-  DimensionPen& pen_;
-  const Obstacles& obstacles_;
-  std::vector<Round> taken_;
-  std::size_t placed_ = 0;
+  const DimensionOptions& options;
+  DimensionPen& pen;
+  const Obstacles& obstacles;
+  std::vector<Round> taken{};
+  std::size_t placed = 0;
 };
 
 constexpr double same_direction = 0.9999;  // cosine
@@ -449,9 +434,9 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
   const std::vector<OverallSizes> shares = overall_sizes_of(views);
   Dimensions all;
   DimensionPen pen(options, obstacles);
-  Diameters diameters(options, pen, obstacles);
+  Diameters diameters{options, pen, obstacles};
   for (std::size_t i = 0; i < views.size(); ++i) {
-    if (measured[i].is_empty) continue;
+    if (measured[i].box.is_empty()) continue;
     for (const int axis : {0, 1}) {
       if (!(axis == 0 ? shares[i].width : shares[i].height)) continue;
       const Extent extent = measured[i].extent(axis);

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dimensions of drawing sheets by ISO 129: overall sizes and diameters.
-//
-// Overall sizes are measured on the drawn lines, not on the model's box, along the axes of the view. If both ends
-// belong to one cylinder, its diameter is used, because the corners of its polygon would give slightly less.
+// Dimensions of drawing sheets by ISO 129: diameters, and overall sizes of the drawn lines, not of the model's box.
 #pragma once
 
 #include <span>
@@ -27,7 +24,6 @@ struct DimensionedView {
 struct DimensionOptions {
   double numbers_per_unit = 1;  ///< numbers per unit of length of the scene; above 0
   int decimals = 2;             ///< the most decimals, 0 to 6; small numbers have three significant digits
-  Pen pen{0.25, {}};            ///< pen of lines and arrows
   double text_height = 3.5;     ///< millimetres, as in TextStyle
 };
 
@@ -55,13 +51,12 @@ struct Dimensions {
   std::size_t prisms = 0;           ///< diameters of cylinders of fewer than 18 sides, which count as polygons
 };
 
-/// Places the overall sizes of overall_sizes_of(), and the diameters of circles and cylinders that are seen along their
-/// axes. Each diameter is on the sheet once; circles of one size in a view share a number ("6x⌀10"). An overall size
-/// that is a cylinder's diameter has the diameter sign, and replaces that diameter. Circles at the end of a cone or
-/// chamfer have no diameter, nor do arcs up to little more than a half circle. At most 64 diameters stand on leader
-/// lines, which are short and cross few lines. Numbers avoid lines and texts of the drawing and `taken`, and stay
-/// within `area` (the page within its frame). O(lines + rounds).
-/// \throws Error bad_argument for options out of range.
+/// Places overall sizes by overall_sizes_of(), and the diameters of circles and cylinders seen along their axes, each
+/// once on the sheet, those of one size in a view together ("6x⌀10"). An overall size of a single cylinder is its
+/// diameter, which the corners of its polygon do not reach. Circles at the end of a cone or chamfer, and arcs of little
+/// more than a half circle or less, have none. At most 64 diameters stand on leader lines. They avoid lines and texts
+/// of the drawing and `taken`, and stay within `area` (the page within its frame). O(lines + rounds). \throws Error
+/// bad_argument for options out of range.
 [[nodiscard]] Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBox& area,
                                           std::span<const PageBox> taken, const DimensionOptions& options = {});
 

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stores the lines and texts on a page, to tell which places are free for more text.
+// The lines and texts on a page, to find free places for more text.
 //
-//    +----+----+----+----+      Cells are about as large as a number. A box is free if it lies on the page and touches
-//    |  __|____|___ |    |      neither a line of its cells nor a text. A leader may cross lines, each at a cost, but
-//    | /  | 50 |   \|    |      no text.
+//    +----+----+----+----+      Cells are about as large as a number. Lines are cut into pieces of about a cell, arcs
+//    |  __|____|___ |    |      into chords. Texts are few and are tested one by one.
+//    | /  | 50 |   \|    |
 //    +----+----+----+----+
-//
-// Lines are cut into pieces of about a cell, arcs into chords. Texts are few and are tested one by one.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <vector>
 
 #include "pages/formats.h"
@@ -24,7 +21,6 @@ struct PageSegment {
   glm::dvec2 from, to;
 };
 
-/// The lines of a page, by the cells of a grid, and its texts.
 class Obstacles {
  public:
   explicit Obstacles(const PageBox& area) : area_(area) {
