@@ -131,6 +131,8 @@ struct PlacedScene {
   [[nodiscard]] PrimitiveId first_id(const MeshRange& range) const {
     return first_primitives[range.instance] + range.begin;
   }
+  /// Whether a triangle of the instance may have holes. O(triangles).
+  [[nodiscard]] bool has_cutouts(std::uint32_t instance) const;
   /// Moves an instance to its place in the scene.
   void follow(std::uint32_t instance, Isa isa);
   /// Makes the levels, and from them the bounds. O(instances * log(instances)).

@@ -145,6 +145,13 @@ bool is_a_point(const Mesh& mesh, const glm::uvec3& c) {
 
 }  // namespace
 
+bool PlacedScene::has_cutouts(std::uint32_t instance) const {
+  if (!cutouts) return false;
+  for (PrimitiveId id = first_primitives[instance]; id < first_primitives[instance + 1]; ++id)
+    if (cutouts->has(id)) return true;
+  return false;
+}
+
 void PlacedScene::follow(std::uint32_t instance, Isa isa) {
   const glm::dmat4& world_from_mesh = scene->instances[instance].world_from_mesh;
   mirrored[instance] = mirrors(world_from_mesh);
@@ -159,9 +166,7 @@ void PlacedScene::follow(std::uint32_t instance, Isa isa) {
     for (std::uint32_t k = 0; k < range->box_count(); ++k) instance_bounds[instance].include(own[k]);
   }
   follow_bounds(instance);
-  PrimitiveId id = first_primitives[instance];
-  while (cutouts && id < first_primitives[instance + 1] && !cutouts->has(id)) ++id;
-  if (!cutouts || id == first_primitives[instance + 1]) return;  // no triangle of the instance may have holes
+  if (!has_cutouts(instance)) return;
   // An index keeps its cutouts until it follows, so shared cutouts are copied.
   if (cutouts.use_count() > 1) cutouts = std::make_shared<Cutouts>(*cutouts);
   cutouts->move(scene->meshes[scene->instances[instance].mesh], world_from_mesh, first_primitives[instance]);
