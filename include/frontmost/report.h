@@ -218,8 +218,8 @@ struct Accounting {
 
 /// Accounts for every object in a view. `visible` is the answer of zbuffer() or a ZBuffer for these surfaces; with
 /// other methods, which do not snap vertices, sums hold only approximately. The result is the same for any number of
-/// threads and every instruction set. O(triangles + rows of pixels that each object touches + samples); 8 bytes a run
-/// of samples that see the same object, and a bit for each sample of the canvas and thread.
+/// threads and every instruction set. O(triangles + rows of pixels that each object touches + samples);
+/// memory: 8 bytes a run of samples that see the same object, and a bit for each sample of the canvas and thread.
 /// \throws Error bad_argument as validate(view) does, for a canvas out of range, and for a `visible` of other surfaces.
 [[nodiscard]] Accounting account(const Surfaces& surfaces, const Visible& visible,
                                  const AccountingOptions& options = {}, const Execution& execution = {});
@@ -444,7 +444,8 @@ struct VisibleFaces {
 /// mode MASK) and translucent ones count as whole, and hide. Culled triangles are left out; View::samples is ignored.
 /// The same for any number of threads and every instruction set. Near-linear in meshes and stacks of parallel sheets;
 /// O(n^2) where n triangles pass through each other and none hides the others. About 150 bytes a triangle, 350 without
-/// shared vertices. \throws Error as validate(view) does; limit_exceeded beyond 2^29 triangles a mesh or 2^31 steps.
+/// shared vertices. \throws Error as validate(view) does; limit_exceeded beyond 2^29 triangles a mesh or about 2^31
+/// steps.
 [[nodiscard]] VisibleFaces visible_faces(const Surfaces& surfaces, const View& view, const Execution& execution = {});
 
 /// A triangle that is seen in at least one of several views.

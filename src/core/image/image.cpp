@@ -59,7 +59,7 @@ void add(WordHash& hash, const AnyImage& image) {
 }
 
 /// A file stores its channels by name, and find() would never reach the second of one name.
-void check_channels(const std::vector<Channel>& channels, std::size_t value_count, const char* expected) {
+void check_channels(const std::vector<Channel>& channels, std::uint64_t value_count, const char* expected) {
   std::set<std::string_view> names;
   for (const Channel& channel : channels) {
     if ((channel.is_integer() ? channel.integers().size() : channel.floats().size()) != value_count)

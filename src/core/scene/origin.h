@@ -14,7 +14,8 @@ namespace frontmost {
 /// On axes on which the points are four extents from zero, the origin is the roundest number near them: a multiple of
 /// the greatest possible power of ten (below one: of two). So models that were moved by a round number are put back
 /// where they were, to the bit. "Near" means within four extents, and within a quarter of the way to zero. So
-/// subtracting the origin from a float leaves a float, without rounding (Sterbenz), and no point is five extents away.
+/// subtracting the origin from a float leaves a float, without rounding (Sterbenz), and no point is more than five
+/// extents from the origin.
 class OriginSearch {
  public:
   /// Adds a point, in any order. Ignores points that are not finite, or not within the range of floats.

@@ -29,7 +29,8 @@ struct ClippedPolygon {
 };
 
 /// Clips a triangle. Precondition: finite vertices. Neighbouring triangles are cut at the same points, to the bit:
-/// every edge is cut from its inner to its outer end, in the same order of planes, and lies on the plane exactly.
+/// every edge is cut from its inner to its outer end, in the same order of planes, and the cut lies on the plane
+/// exactly.
 [[nodiscard]] ClippedPolygon clip_triangle(const ScreenTransform& t, const std::array<glm::vec3, 3>& world);
 
 }  // namespace frontmost

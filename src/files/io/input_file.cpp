@@ -76,10 +76,11 @@ InputFile InputFile::open(const std::filesystem::path& path, const std::string& 
   if (!S_ISREG(status.st_mode) || size < mapping_threshold)
     return read_stream(number, name, std::min(max_bytes, max_stream_bytes));
   check_size(size, max_bytes, name);
-  void* start = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, number, 0);
+  const auto bytes = std::size_t(size);
+  void* start = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, number, 0);
   if (start == MAP_FAILED) fail_to_read_by_errno(name, "cannot map");
-  ::madvise(start, size, MADV_SEQUENTIAL);  // only advice
-  return {Data(static_cast<const std::byte*>(start), Delete{size}), size};
+  ::madvise(start, bytes, MADV_SEQUENTIAL);  // only advice
+  return {Data(static_cast<const std::byte*>(start), Delete{bytes}), bytes};
 }
 
 InputFile InputFile::open_input(const std::string& path, std::uint64_t max_bytes) {

@@ -130,7 +130,7 @@ class RiskFinder {
 
   /// The area that both faces cover and in which neither is surely shown; may be empty. Valid until the next call.
   [[nodiscard]] const ConvexArea& of_pair(const ScreenFace& a, const ScreenFace& b);
-  /// The area in which a face may be stored as the clear value.
+  /// The area in which a face may be stored as the clear value. Precondition: may_be_clear_value(face).
   [[nodiscard]] const ConvexArea& of_clear_value(const ScreenFace& face);
   /// False if the area of of_clear_value() is certainly empty.
   [[nodiscard]] bool may_be_clear_value(const ScreenFace& face) const { return double(face.low) <= farthest_key_; }

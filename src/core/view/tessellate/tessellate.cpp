@@ -123,7 +123,8 @@ PatchLevel PatchBending::level_within(double tolerance) const {
   // A control point is infinite or NaN: tessellate() leaves such patches out.
   if (!std::isfinite(error(level))) return level;  // never seen
   while (error(level) > tolerance && (level.u < finest_level || level.v < finest_level)) {
-    // The direction with the greater share of the error is halved. This quarters its share, and keeps the other.
+    // The direction with the greater share of the error is halved. This quarters its share, and keeps the share
+    // of the other direction.
     const double by_u = uu_ / level.u / level.u, by_v = vv_ / level.v / level.v;
     // If only the twist remains, the longer cells are halved.
     const bool is_u = by_u != by_v ? by_u > by_v : level.u <= level.v;

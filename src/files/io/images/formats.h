@@ -87,7 +87,7 @@ enum class ImagePart : std::uint8_t { size, pixels };
 [[nodiscard]] Texture decode_jpeg(std::span<const std::byte> bytes, const std::string& name, ImagePart part);
 [[nodiscard]] Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, ImagePart part);
 [[nodiscard]] bool has_webp();
-/// A decoder's result before decoding, with room for the pixels unless only the size is wanted.
+/// A texture of this size, with room for its pixels unless only the size is wanted.
 [[nodiscard]] Texture texture_of_size(const std::string& name, int width, int height, ImagePart part);
 
 /// \throws Error limit_exceeded if a side has more pixels than the format holds.
