@@ -69,30 +69,34 @@ struct Drawing {
   std::vector<DrawnPart> parts;  ///< in the order of their edges; nothing outside the view
 };
 
-// The rules of draw_lines(): - Hiding. A triangle hides a point if the line of sight passes through the triangle, its
-// edges included, in front of the point. Signs of determinants of the vertices' floats decide this, without tolerance.
-// An edge is therefore not hidden by its own triangles, nor by others in their planes, and nothing is seen through the
-// seam between two triangles. Only the ends of parts are rounded, to doubles. Triangles between the eye and the near
-// plane hide nothing. Triangles with holes (alpha mode MASK) hide as if they had none. View::culling is ignored. -
-// Vertices at one place count as one, which closes open seams of files without shared vertices. - Intersections. Two
-// triangles intersect if each has vertices strictly on both sides of the other's plane. An edge is an intersection,
-// too, if it lies in the plane of a triangle between its own two, and is not drawn for another reason. An object that
-// only stands on a surface does not intersect it. Ends of intersections are rounded, so a plane counts as containing an
-// end if rounding leaves that open. Lines of surfaces that cross have no gaps: segments share their ends to the bit. -
-// Degenerate triangles, with vertices exactly on one line, are left out. If they fill a T-junction between a long edge
-// and the short edges that meet it, the long edge's triangle counts as split at the vertices on that edge. The seam is
-// then drawn like any other edge, or not at all if the surface continues. An unfilled T-junction is open: its edges are
-// boundaries. - Duplicates. A triangle that occurs again, with its vertices in any order, counts once. Two objects,
-// such as a housing and its cover, may share triangles up to an edge and part there; so may two surfaces of one object.
-// Each of the two then continues by itself, and their common edge is drawn once, with the kind that comes first in
-// EdgeKind. So no line is drawn where two objects, each smooth, pass through each other exactly along a common edge.
+// The rules of draw_lines():
+//
+// - Hiding. A triangle hides a point if the line of sight passes through the triangle, its edges included, in front of
+//   the point. Signs of determinants of the vertices' floats decide this, without tolerance. An edge is therefore not
+//   hidden by its own triangles, nor by others in their planes, and nothing is seen through the seam between two
+//   triangles. Only the ends of parts are rounded, to doubles. Triangles between the eye and the near plane hide
+//   nothing. Triangles with holes (alpha mode MASK) hide as if they had none. View::culling is ignored.
+// - Vertices at one place count as one, which closes open seams of files without shared vertices.
+// - Intersections. Two triangles intersect if each has vertices strictly on both sides of the other's plane. An edge
+//   is an intersection, too, if it lies in the plane of a triangle between its own two, and is not drawn for another
+//   reason. An object that only stands on a surface does not intersect it. Ends of intersections are rounded, so a
+//   plane counts as containing an end if rounding leaves that open. Lines of surfaces that cross have no gaps: segments
+//   share their ends to the bit.
+// - Degenerate triangles, with vertices exactly on one line, are left out. If they fill a T-junction between a long
+//   edge and the short edges that meet it, the long edge's triangle counts as split at the vertices on that edge. The
+//   seam is then drawn like any other edge, or not at all if the surface continues. An unfilled T-junction is open: its
+//   edges are boundaries.
+// - Duplicates. A triangle that occurs again, with its vertices in any order, counts once. Two objects, such as a
+//   housing and its cover, may share triangles up to an edge and part there; so may two surfaces of one object. Each of
+//   the two then continues by itself, and their common edge is drawn once, with the kind that comes first in EdgeKind.
+//   So no line is drawn where two objects, each smooth, pass through each other exactly along a common edge.
 
 /// Finds the feature edges of `surfaces` and cuts each into seen and hidden parts. The result is the same to the bit
-/// for any number of threads and every instruction set. Near-linear; quadratic with `counts_hidden`, or if thousands of
-/// edges and triangles lie in one place of the screen, as at a vertex of thousands of slivers: 20,000 take 11 s. (A.
-/// Appel. The Notion of Quantitative Invisibility and the Machine Rendering of Solids. 1967.) \throws Error as
-/// validate(view) does; bad_argument for an angle out of range; limit_exceeded for more than 2^20 segments of
-/// intersections plus 16 per triangle, 2^21 parts plus 4 per edge, or about 20 s of work.
+/// for any number of threads and every instruction set. Near-linear; quadratic within a cell of the screen with
+/// `counts_hidden`, or if thousands of edges and triangles lie in one place of the screen, as at a vertex of thousands
+/// of slivers: 20,000 take 11 s. (A. Appel. The Notion of Quantitative Invisibility and the Machine Rendering of
+/// Solids. 1967.) \throws Error as validate(view) does; bad_argument for an angle out of range; limit_exceeded for more
+/// than 2^20 segments of intersections plus 16 per triangle, 2^21 parts plus 4 per edge, or about 20 s of work.
 [[nodiscard]] Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions& options = {},
                                  const Execution& execution = {});
 

@@ -191,8 +191,8 @@ class SideNet {
     is_used_.assign(left_.size(), 0);
   }
 
-  /// Finds the next ring. \returns whether there is one. As many sides end at each point as begin there, so every walk
-  /// returns to its first point.
+  /// Sets ring_ to the ring that begins with side `first`, which is unused. As many sides end at each point as begin
+  /// there, so every walk returns to its first point.
   void walk_around(std::size_t first) {
     ring_.clear();
     std::size_t side = first;

@@ -374,8 +374,8 @@ struct WallGrower {
   const SmoothMesh& mesh;
   std::vector<bool> is_used = std::vector<bool>(mesh.mesh.triangles.size());
   Tube current{};
-  double slack = 0, within = 0, outside = 1;  ///< slack_ and within_: how far vertices may lie outside and inside of
-                                              ///< the radius; outside_: 1, or -1 if hollow
+  double slack = 0, within = 0, outside = 1;  ///< slack and within: how far vertices may lie outside and inside of
+                                              ///< the radius; outside: 1, or -1 if hollow
   std::vector<std::uint32_t> triangles{};
 };
 

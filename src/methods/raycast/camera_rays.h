@@ -82,7 +82,7 @@ template <class Turned>
 }
 
 /// Directions of all pixels of a grid, at one place within each pixel. Azimuths of columns and elevations of rows are
-/// computed once: the same bits, in a tenth of the time.
+/// computed once: the same bits, in a tenth of the time. Borrows the model.
 template <class Model>
 class GridDirections {
  public:

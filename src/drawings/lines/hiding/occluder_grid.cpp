@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -516,11 +517,12 @@ void OccluderGrid::fill_sides(const GridPlan& plan) {
       const glm::dvec2 corner(cells_.square(cell).x, cells_.square(cell).y);
       for (std::size_t i = 0; i < first_[cell + 1] - first_[cell]; ++i) {
         const Footprint& footprint = plan.footprints[numbers_[first_[cell] + i]];
-        const CellDepth depth = plan.depth_of(footprint.triangle);
+        std::optional<CellDepth> depth;
+        if (!plan.is_near(footprint)) depth = plan.depth_of(footprint.triangle);
         for (int k = 0; k < ScreenSides::count; ++k) {
-          const CellDepth::Side side = plan.is_near(footprint) ? CellDepth::nowhere_outside
-                                       : k < 3                 ? depth.side(k, corner)
-                                                               : depth.plane(corner);
+          const CellDepth::Side side = !depth  ? CellDepth::nowhere_outside
+                                       : k < 3 ? depth->side(k, corner)
+                                               : depth->plane(corner);
           sides_[3 * k][first_side_[cell] + i] = side.a;
           sides_[3 * k + 1][first_side_[cell] + i] = side.b;
           sides_[3 * k + 2][first_side_[cell] + i] = side.c;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The steps from the parts of a drawing to strokes, and their data:
 //
-//    parts of a drawing --> segments --draw_once--> --chained--> chains --without_short_ones-->
+//    parts of a drawing --> segments --draw_once--> --chained--> chains --ShortChains-->
 //        --straighten--> --find_arcs--> --nearest_first--> Strokes
 //
 // A chain knows its rank and its points, but not the edges that it came from.

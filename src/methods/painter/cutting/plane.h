@@ -115,7 +115,7 @@ class Plane {
   [[nodiscard]] static Approximate closest_meeting(const std::array<Plane, 3>& planes, double error);
   /// The side of the point where three planes meet, exactly. Precondition: the planes meet in one point.
   [[nodiscard]] int side_of_meeting(const std::array<Plane, 3>& planes) const;
-  /// The plane in numbers of this kind, relative to the anchor of another plane.
+  /// The plane in numbers of this kind, relative to the anchor of another plane. Defined in plane.cpp, for use there.
   template <class Number>
   [[nodiscard]] LongPlane<Number> in_full(const Plane& other) const;
 
