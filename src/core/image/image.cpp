@@ -91,7 +91,7 @@ void validate(const DeepImage& image) {
   const std::size_t pixels = std::size_t(image.width) * std::size_t(image.height);
   if (image.first.size() != pixels + 1 || image.first[0] != 0 ||
       !std::is_sorted(image.first.begin(), image.first.end()))
-    fail("a deep image needs ascending beginnings, one for each pixel, and the end");
+    fail("a deep image needs the index of each pixel's first sample, ascending from 0, and the number of all samples");
   check_channels(image.channels, image.first[pixels], "one value for each sample");
 }
 
