@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles have a double-sided material, as Culling::material asks.
+// Tells which triangles have a double-sided material, as Culling::material asks.
 //
 // Most scenes have materials of one kind only. If both kinds occur, each triangle has a bit.
 #pragma once

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles all methods cull because of the side that a view sees.
+// Tells which triangles all methods cull because of the side that a view sees.
 #pragma once
 
 #include "frontmost/view.h"

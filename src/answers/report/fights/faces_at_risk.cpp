@@ -208,7 +208,8 @@ AffineOverScreen inside_of_side(const glm::dvec2& from, const glm::dvec2& to) {
   return {-glm::dot(normal, from), normal};
 }
 
-/// Not negative where `nearer` is not surely shown: constant + relative * nearer - (nearer - other).
+/// Returns a function that is not negative where `nearer` is not surely shown: constant + relative * nearer - (nearer -
+/// other).
 AffineOverScreen is_not_shown(const KeyOverScreen& nearer, const KeyOverScreen& other, const KeyStep& step,
                               double slack) {
   const double share = step.relative - 1;

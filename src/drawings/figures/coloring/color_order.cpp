@@ -12,6 +12,7 @@
 #include <atomic>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "base/parallel.h"
 #include "base/pool.h"

@@ -49,7 +49,7 @@ struct Side {
 /// Two sides of one edge across which a surface continues.
 using SidePair = std::pair<Side, Side>;
 
-/// Which object and material a triangle belongs to.
+/// The object and the material that a triangle belongs to.
 struct SurfaceOf {
   std::uint32_t instance, material;
   friend bool operator==(const SurfaceOf&, const SurfaceOf&) = default;

@@ -142,7 +142,8 @@ class LargeTriangles {
     std::uint64_t none = 0, all = 0;
   };
 
-  /// Which samples of a block are kept: all nearer ones, nearer and covered ones, or nearer, covered and solid ones.
+  /// Selects the samples of a block that are kept: all nearer ones, nearer and covered ones, or nearer, covered and
+  /// solid ones.
   enum class Filling { whole, covered, solid };
 
   template <class Rows>
