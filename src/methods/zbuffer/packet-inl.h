@@ -55,12 +55,17 @@ HWY_INLINE CoordinateRange RangeOf(VI a, VI b, VI c) { return {hn::Min(a, hn::Mi
 struct PixelRange {
   VI first, last;
 };
+/// PixelsOf() for the pixels from `first` to `last`.
+HWY_INLINE PixelRange PixelsBetween(const CoordinateRange& range, std::int32_t low, std::int32_t high,
+                                    std::int32_t first, std::int32_t last) {
+  const DI d;
+  return {hn::Max(hn::ShiftRight<8>(hn::Add(range.least, hn::Set(d, 255 - high))), hn::Set(d, first)),
+          hn::Min(hn::ShiftRight<8>(hn::Sub(range.greatest, hn::Set(d, low))), hn::Set(d, last))};
+}
 /// The first of `size` pixels that has a sample at or after the least coordinate, and the last that has one at or
 /// before the greatest. `low` and `high` are the outermost sample offsets. The range is empty if first > last.
 HWY_INLINE PixelRange PixelsOf(const CoordinateRange& range, std::int32_t low, std::int32_t high, std::int32_t size) {
-  const DI d;
-  return {hn::Max(hn::ShiftRight<8>(hn::Add(range.least, hn::Set(d, 255 - high))), hn::Zero(d)),
-          hn::Min(hn::ShiftRight<8>(hn::Sub(range.greatest, hn::Set(d, low))), hn::Set(d, size - 1))};
+  return PixelsBetween(range, low, high, 0, size - 1);
 }
 
 /// One vertex of each triangle of a vector: its number, and its place on the screen.
@@ -96,6 +101,39 @@ struct PlacedPacket {
   MI kept;
   const Corners corners[3];
   PixelRange columns, rows;
+};
+
+/// Returns BatchColumns::tiles of each triangle. Eight bits a number are enough, because the largest image has 128
+/// tiles in either direction.
+HWY_INLINE VI TilesOf(const PixelRange& columns, const PixelRange& rows) {
+  static_assert(kTileSize == 1 << 7);
+  const VI first = hn::Or(hn::ShiftRight<7>(columns.first), hn::ShiftLeft<8>(hn::ShiftRight<7>(rows.first)));
+  const VI last = hn::Or(hn::ShiftRight<7>(columns.last), hn::ShiftLeft<8>(hn::ShiftRight<7>(rows.last)));
+  return hn::Or(first, hn::ShiftLeft<16>(last));
+}
+
+/// The pixel rectangle of a batch, widened by each packet that is placed.
+class WidenedRect {
+ public:
+  explicit WidenedRect(const PixelRect& rect)
+      : least_x_(hn::Set(DI(), rect.x0)),
+        least_y_(hn::Set(DI(), rect.y0)),
+        greatest_x_(hn::Set(DI(), rect.x1)),
+        greatest_y_(hn::Set(DI(), rect.y1)) {}
+  HWY_INLINE void Add(const PlacedPacket& placed) {
+    least_x_ = hn::IfThenElse(placed.kept, hn::Min(least_x_, placed.columns.first), least_x_);
+    least_y_ = hn::IfThenElse(placed.kept, hn::Min(least_y_, placed.rows.first), least_y_);
+    greatest_x_ = hn::IfThenElse(placed.kept, hn::Max(greatest_x_, placed.columns.last), greatest_x_);
+    greatest_y_ = hn::IfThenElse(placed.kept, hn::Max(greatest_y_, placed.rows.last), greatest_y_);
+  }
+  [[nodiscard]] PixelRect rect() const {
+    const DI d;
+    return {hn::GetLane(hn::MinOfLanes(d, least_x_)), hn::GetLane(hn::MinOfLanes(d, least_y_)),
+            hn::GetLane(hn::MaxOfLanes(d, greatest_x_)), hn::GetLane(hn::MaxOfLanes(d, greatest_y_))};
+  }
+
+ private:
+  VI least_x_, least_y_, greatest_x_, greatest_y_;
 };
 
 /// Finds which `live` triangles may cover a sample, and passes them to `sink`. The sink's ColumnsOf(range) and

@@ -138,22 +138,15 @@ class Placer {
  public:
   Placer(const PlaceTarget& target, const WorldTriangles& triangles, const SnappedVertices& vertices,
          TriangleBatch& batch, std::vector<std::uint32_t>& apart)
-      : target_(target), triangles_(triangles), vertices_(vertices), batch_(batch), apart_(apart) {
-    const DI d;
-    least_x_ = hn::Set(d, batch.rect.x0);
-    least_y_ = hn::Set(d, batch.rect.y0);
-    greatest_x_ = hn::Set(d, batch.rect.x1);
-    greatest_y_ = hn::Set(d, batch.rect.y1);
-    nearest_ = hn::Set(d, batch.nearest);
+      : target_(target), triangles_(triangles), vertices_(vertices), batch_(batch), apart_(apart), rect_(batch.rect) {
+    nearest_ = hn::Set(DI(), batch.nearest);
   }
 
   void Place() {
-    const DI d;
     ForTriples(triangles_.corners,
                [&](std::size_t i, const std::uint32_t* corners) HWY_ATTR { PlacePacket(i, corners); });
-    batch_.rect = {hn::GetLane(hn::MinOfLanes(d, least_x_)), hn::GetLane(hn::MinOfLanes(d, least_y_)),
-                   hn::GetLane(hn::MaxOfLanes(d, greatest_x_)), hn::GetLane(hn::MaxOfLanes(d, greatest_y_))};
-    batch_.nearest = hn::GetLane(hn::MaxOfLanes(d, nearest_));
+    batch_.rect = rect_.rect();
+    batch_.nearest = hn::GetLane(hn::MaxOfLanes(DI(), nearest_));
   }
 
   // The sink functions of SortOut().
@@ -172,7 +165,7 @@ class Placer {
   HWY_INLINE void PutLarge(MI large) { others_ |= BitsOf(DI(), large); }
   HWY_INLINE void PutSmall(const PlacedPacket& placed) {
     const DI d;
-    Note(placed);
+    rect_.Add(placed);
     const VI tiles = TilesOf(placed.columns, placed.rows);
     const Compactor<DI> compact(placed.kept);
     BatchColumns& to = batch_.columns();
@@ -231,30 +224,13 @@ class Placer {
     others_ = 0;
   }
 
-  /// Widens the bounds of the whole batch.
-  HWY_INLINE void Note(const PlacedPacket& placed) {
-    least_x_ = hn::IfThenElse(placed.kept, hn::Min(least_x_, placed.columns.first), least_x_);
-    least_y_ = hn::IfThenElse(placed.kept, hn::Min(least_y_, placed.rows.first), least_y_);
-    greatest_x_ = hn::IfThenElse(placed.kept, hn::Max(greatest_x_, placed.columns.last), greatest_x_);
-    greatest_y_ = hn::IfThenElse(placed.kept, hn::Max(greatest_y_, placed.rows.last), greatest_y_);
-  }
-
-  /// Returns BatchColumns::tiles of each triangle. Eight bits a number are enough, because the largest image has 128
-  /// tiles in either direction.
-  [[nodiscard]] static HWY_INLINE VI TilesOf(const PixelRange& columns, const PixelRange& rows) {
-    static_assert(kTileSize == 1 << 7);
-    const VI first = hn::Or(hn::ShiftRight<7>(columns.first), hn::ShiftLeft<8>(hn::ShiftRight<7>(rows.first)));
-    const VI last = hn::Or(hn::ShiftRight<7>(columns.last), hn::ShiftLeft<8>(hn::ShiftRight<7>(rows.last)));
-    return hn::Or(first, hn::ShiftLeft<16>(last));
-  }
-
   const PlaceTarget& target_;
   const WorldTriangles& triangles_;
   const SnappedVertices& vertices_;
   TriangleBatch& batch_;
   std::vector<std::uint32_t>& apart_;
-  VI least_x_, least_y_, greatest_x_, greatest_y_;  // pixels
-  VI nearest_;                                      // bits of keys
+  WidenedRect rect_;
+  VI nearest_;  // bits of keys
   // First triangle of the packet, and the lanes of its triangles that are drawn one by one.
   std::size_t first_ = 0;
   std::uint64_t others_ = 0;

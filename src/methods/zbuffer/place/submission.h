@@ -38,7 +38,12 @@ class OrderedBatch {
   /// Makes the lists by tile, once all triangles are appended.
   void list_tiles(const View& view);
 
+  /// Appends a triangle that is drawn one by one. Precondition: its area is positive, and ids ascend.
+  void append(const SingleTriangle& single) { singles_.push_back(single); }
+
   [[nodiscard]] const TriangleBatch& small() const { return small_; }
+  [[nodiscard]] TriangleBatch& small() { return small_; }
+  [[nodiscard]] std::span<const SingleTriangle> singles() const { return singles_; }
   [[nodiscard]] bool is_in(const Tile& tile) const {
     return !small_.in_tile(tile.column(), tile.row()).empty() || !singles_in(tile).empty();
   }
