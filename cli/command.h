@@ -49,6 +49,7 @@ int run_lines(const Settings& settings);
 int run_report(const Settings& settings);
 int run_visible(const Settings& settings);
 int run_batch_merge(const Settings& settings);
+int run_gl(const Settings& settings);
 
 /// Fills Settings from the words after the command's name.
 /// \throws UsageError

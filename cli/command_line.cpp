@@ -6,6 +6,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <utility>
 
 #include "cli/command.h"
 #include "cli/failure.h"
@@ -57,9 +58,10 @@ std::vector<std::string_view> known_flags(const Command& command) {
 
 /// Takes the words that belong to no option. They are further models, if the command takes several.
 void take_leftovers(const Command& command, const std::vector<std::string>& words, Settings& settings) {
+  bool options_ended = false;
   for (const std::string& word : words) {
-    if (word == "--") continue;  // it has ended the options
-    if (word.size() > 1 && word[0] == '-') complain_of_unknown(command, word);
+    if (word == "--" && !std::exchange(options_ended, true)) continue;
+    if (word.size() > 1 && word[0] == '-' && !options_ended) complain_of_unknown(command, word);
     if (command.argument.empty()) throw UsageError(fmt::format("unexpected argument '{}'", word));
     if (command.takes_object())
       throw UsageError(fmt::format("two objects are given, '{}' and '{}'; this command takes one object at a time",

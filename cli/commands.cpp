@@ -125,6 +125,16 @@ constexpr Command table[] = {
      "frontmost compare city.glb --explain --threads 1\n"
      "frontmost compare part.stl --view iso -o comparison",
      run_compare},
+    {"gl", for_gl, "PROGRAM [ARG]...", "Run a program that uses OpenGL 1.x, without a display, and keep its picture.",
+     "Starts PROGRAM, unchanged, with Frontmost's libraries in place of OpenGL, GLUT and OSMesa. The picture has the "
+     "same bytes on every machine. One frame is drawn, or as many as --frames or --script say, on a simulated clock "
+     "with "
+     "60 frames a second. Arguments of PROGRAM that begin with a dash stand behind --. The exit status is that of "
+     "PROGRAM.",
+     "frontmost gl ./gears -o gears.png\n"
+     "frontmost gl ./gears --size 640x480 --frames 30 -o gears.png\n"
+     "frontmost gl ./viewer --script tour.txt -- -model bunny.ply",
+     run_gl},
     {"completion", 0, "bash|zsh|fish", "Print a shell completion script.", "",
      "frontmost completion bash > ~/.local/share/bash-completion/completions/frontmost\n"
      "frontmost completion zsh > ~/.zfunc/_frontmost\n"

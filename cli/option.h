@@ -23,6 +23,7 @@ enum class Group : std::uint8_t {
   drawing,
   report,
   faces,
+  program,
   output,
   look,
   run
@@ -39,6 +40,7 @@ inline constexpr std::string_view group_titles[] = {"Model",
                                                     "The drawing",
                                                     "The report",
                                                     "Views",
+                                                    "The program",
                                                     "Output files",
                                                     "Look of the picture",
                                                     "Running"};
@@ -58,6 +60,7 @@ enum CommandBit : unsigned {
   for_visible = 1024,
   for_batch_merge = 2048,
   for_explain = 4096,
+  for_gl = 8192,
   for_every_model = for_render | for_info | for_camera | for_precision | for_sight | for_lidar | for_compare |
                     for_lines | for_report | for_visible | for_explain
 };
@@ -106,6 +109,7 @@ struct Option {
 [[nodiscard]] std::span<const Option> drawing_option_table();
 [[nodiscard]] std::span<const Option> report_option_table();
 [[nodiscard]] std::span<const Option> visible_option_table();
+[[nodiscard]] std::span<const Option> gl_option_table();
 [[nodiscard]] std::span<const Option> output_option_table();
 [[nodiscard]] std::span<const Option> batch_merge_option_table();
 [[nodiscard]] std::span<const Option> run_option_table();
@@ -116,7 +120,7 @@ void for_each_option(const Visit& visit) {
   for (const auto table :
        {view_option_table(), depth_option_table(), precision_option_table(), sight_option_table(), lidar_option_table(),
         compare_option_table(), drawing_option_table(), report_option_table(), visible_option_table(),
-        output_option_table(), batch_merge_option_table(), run_option_table()}) {
+        gl_option_table(), output_option_table(), batch_merge_option_table(), run_option_table()}) {
     for (const Option& option : table) visit(option);
   }
 }

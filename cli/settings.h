@@ -220,9 +220,18 @@ struct VisibleSettings {
   std::vector<std::string> outputs, kept;  ///< lists and coloured models; models of visible faces
 };
 
+/// Settings of frontmost gl.
+struct ProgramSettings {
+  std::optional<std::string> output, script;
+  std::optional<glm::ivec2> size;
+  std::optional<int> frames;
+  bool verbose = false;
+};
+
 struct Settings {
-  std::string model;
-  std::vector<std::string> more_models;  ///< `render` draws them with the first; `lines` gives each a sheet
+  std::string model;                     ///< for `gl`, the program
+  std::vector<std::string> more_models;  ///< `render` draws them with the first; `lines` gives each a sheet; for `gl`,
+                                         ///< the program's arguments
   LoadOptions load;
   ViewSettings view;
   PrecisionSettings precision;
@@ -232,6 +241,7 @@ struct Settings {
   DrawingSettings drawing;
   ReportSettings report;
   VisibleSettings visible;
+  ProgramSettings program;
   OutputSettings output;
   RunSettings run;
   std::optional<std::string> merge_folder;  ///< for `batch-merge`

@@ -76,6 +76,29 @@ install(FILES ${PROJECT_BINARY_DIR}/frontmostConfig.cmake ${PROJECT_BINARY_DIR}/
   cmake/FindISAL.cmake cmake/FindLibZip.cmake cmake/FindWebP.cmake
   DESTINATION ${FRONTMOST_CMAKE_DIR} COMPONENT development)
 
+# OpenGL's calls are a package of their own: the library, its names for finished programs, and what programs are
+# compiled with.
+if(TARGET frontmost_gl)
+  install(TARGETS frontmost_gl EXPORT frontmostGlTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT gl)
+  install(TARGETS frontmost_glut LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT gl)
+  install(EXPORT frontmostGlTargets NAMESPACE frontmost:: DESTINATION ${FRONTMOST_CMAKE_DIR} COMPONENT gl)
+  install(DIRECTORY include/frontmost-gl DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT gl)
+  foreach(name ${FRONTMOST_GL_NAMES})
+    string(REGEX MATCH "glut" kind ${name})
+    if(NOT kind)
+      set(kind gl)
+    endif()
+    set(link ${PROJECT_BINARY_DIR}/links/${name})
+    file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/links)
+    file(CREATE_LINK ../libfrontmost-${kind}.so.${PROJECT_VERSION_MAJOR} ${link} SYMBOLIC)
+    install(FILES ${link} DESTINATION ${CMAKE_INSTALL_LIBDIR}/frontmost-gl COMPONENT gl)
+  endforeach()
+  file(RELATIVE_PATH FRONTMOST_PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  configure_file(cmake/frontmost-gl.pc.in ${PROJECT_BINARY_DIR}/frontmost-gl.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/frontmost-gl.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT gl)
+  install(FILES docs/opengl.md DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/frontmost-gl COMPONENT gl)
+endif()
+
 # A static library cannot be linked without its own dependencies, so these are plain requirements there, and consumers
 # need no --static.
 list(JOIN FRONTMOST_LINKED_PC " " linked_modules)

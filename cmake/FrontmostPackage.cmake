@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Debian packages by CPack: frontmost (the program), libfrontmost-dev (library, headers, descriptions) and, if their
-# modules are built, python3-frontmost and frontmost-mpi.
+# modules are built, python3-frontmost, frontmost-mpi and
+# frontmost-gl.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME frontmost)
 set(CPACK_PACKAGE_CONTACT "Frontmost maintainers <maintainers@frontmost.example>")
@@ -54,6 +55,21 @@ if(TARGET frontmost_mpi)
   set(CPACK_COMPONENT_MPI_DESCRIPTION
 "What frontmost render --mpi needs to share models that are larger than one
 machine among the ranks of mpirun.")
+endif()
+
+if(TARGET frontmost_gl)
+  list(APPEND CPACK_COMPONENTS_ALL gl)
+  set(CPACK_DEBIAN_GL_PACKAGE_NAME frontmost-gl)
+  set(CPACK_DEBIAN_GL_PACKAGE_SECTION libs)
+  set(CPACK_DEBIAN_GL_PACKAGE_SHLIBDEPS ON)
+  if(NOT frontmost_kind STREQUAL STATIC_LIBRARY)
+    set(CPACK_DEBIAN_GL_PACKAGE_DEPENDS "frontmost (= ${PROJECT_VERSION})")
+  endif()
+  set(CPACK_DEBIAN_GL_PACKAGE_RECOMMENDS libgl-dev)
+  set(CPACK_COMPONENT_GL_DESCRIPTION
+"OpenGL 1.x, OSMesa and GLUT for programs that run without a display or a GPU.
+Finished programs run unchanged by frontmost gl, and draw the same pixels on
+every machine.")
 endif()
 
 include(CPack)

@@ -64,4 +64,5 @@ def write(folder):
     (folder / "object.ply").write_bytes(ply())
     (folder / "engine.glb").write_bytes(glb())
     (folder / "lamp.glb").write_bytes(glb(lamp=True))
+    (folder / "tour.txt").write_text("frames 5\nkey a\nmouse left down 100 50\nwrite view.png\n")
     (folder / "pose.txt").write_text("1 0 0 -1\n0 1 0 -0.5\n0 0 1 6\n0 0 0 1\n")

@@ -75,13 +75,20 @@ def run_shell(page, first, text, folder, environment):
     return False
 
 
-def run(program, frontmost):
+def run(program, frontmost, window):
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         sample_models.write(folder)
         environment = dict(os.environ, PATH=f"{frontmost.resolve().parent}:{os.environ['PATH']}")
         good = subprocess.run([program.resolve()], cwd=folder, timeout=900).returncode == 0
         commands = list(blocks("sh"))
+        if window:  # a program that uses OpenGL
+            for name in ("gears", "viewer"):
+                (folder / name).symlink_to(window.resolve())
+        else:
+            of_opengl = [block for block in commands if "frontmost gl " in block[2]]
+            commands = [block for block in commands if block not in of_opengl]
+            print(f"{len(of_opengl)} shell blocks are skipped, because libfrontmost-gl is not built")
         good = all([run_shell(*block, folder, environment) for block in commands]) and good
     print(f"{len(list(blocks('cpp')))} C++ blocks, {len(commands)} shell blocks")
     sys.exit(not good)
@@ -94,11 +101,12 @@ def main():
     verb = verbs.add_parser("run")
     verb.add_argument("program", type=pathlib.Path)
     verb.add_argument("frontmost", type=pathlib.Path)
+    verb.add_argument("window", type=pathlib.Path, nargs="?")
     arguments = parser.parse_args()
     if arguments.verb == "emit":
         emit(arguments.file)
     else:
-        run(arguments.program, arguments.frontmost)
+        run(arguments.program, arguments.frontmost, arguments.window)
 
 
 if __name__ == "__main__":

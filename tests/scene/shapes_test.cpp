@@ -35,6 +35,16 @@ TEST(Turn, IsSymmetricToTheLastBit) {
   }
 }
 
+TEST(Turn, ByDegreesIsTheSameForWholeOnes) {
+  for (int degrees = -800; degrees <= 800; ++degrees)
+    EXPECT_EQ(turn_of_degrees(degrees), turn(degrees, 360)) << degrees;
+  for (const double degrees : {0.1, 44.999, 45.001, 359.9999, -1e-9, 123456.75}) {
+    const double radians = std::fmod(degrees, 360) * 3.14159265358979323846 / 180;
+    EXPECT_NEAR(turn_of_degrees(degrees).x, std::cos(radians), 1e-15) << degrees;
+    EXPECT_NEAR(turn_of_degrees(degrees).y, std::sin(radians), 1e-15) << degrees;
+  }
+}
+
 TEST(Turn, NoNegativeZeros) {
   for (int part = 0; part < 16; ++part)
     for (int k = 0; k < 2; ++k) EXPECT_FALSE(turn(part, 16)[k] == 0 && std::signbit(turn(part, 16)[k])) << part;
