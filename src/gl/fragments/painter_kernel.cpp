@@ -342,7 +342,7 @@ class BatchInTile {
   }
 
   /// Processes the fragments of a list, one pass for each repetition of a pixel.
-  HWY_INLINE void InOrder(const ListSource& source, MI live, VI depth) {
+  HWY_NOINLINE void InOrder(const ListSource& source, MI live, VI depth) {
     const DI d;
     HWY_ALIGN_MAX std::int32_t at[kMaxLanes];
     hn::Store(source.at, d, at);
@@ -351,21 +351,31 @@ class BatchInTile {
       const MI later = hn::Gt(hn::Iota(d, 0), hn::Set(d, std::int32_t(k)));
       repeats = hn::Or(repeats, hn::And(later, hn::Eq(source.at, hn::Set(d, at[k]))));
     }
-    if (hn::AllFalse(d, hn::And(repeats, live))) return stage_.Process(source, live, depth);
-    for (std::uint64_t left = BitsOf(d, live); left != 0;) {
-      std::uint64_t now = 0;
-      HWY_ALIGN_MAX std::int32_t chosen[kMaxLanes] = {};
-      ForEachBit(left, [&](std::size_t lane) {
-        bool is_first = true;
-        ForEachBit(left & ((std::uint64_t(1) << lane) - 1),
-                   [&](std::size_t before) { is_first &= at[before] != at[lane]; });
-        if (!is_first) return;
-        now |= std::uint64_t(1) << lane;
-        chosen[lane] = -1;
-      });
-      stage_.Process(source, hn::MaskFromVec(hn::Load(d, chosen)), depth);
+    const bool has_repeats = !hn::AllFalse(d, hn::And(repeats, live));
+    std::uint64_t left = BitsOf(d, live);
+    do {
+      const std::uint64_t now = has_repeats ? FirstOf(left, at) : left;
+      stage_.Process(source, has_repeats ? LanesOf(now) : live, depth);
       left &= ~now;
-    }
+    } while (left != 0);
+  }
+
+  [[nodiscard]] static MI LanesOf(std::uint64_t bits) {
+    HWY_ALIGN_MAX std::int32_t lanes[kMaxLanes] = {};
+    ForEachBit(bits, [&](std::size_t lane) { lanes[lane] = -1; });
+    return hn::MaskFromVec(hn::Load(DI(), lanes));
+  }
+
+  /// The lanes of `lanes` whose pixel no lane before them has.
+  [[nodiscard]] static std::uint64_t FirstOf(std::uint64_t lanes, const std::int32_t* at) {
+    std::uint64_t first = 0;
+    ForEachBit(lanes, [&](std::size_t lane) {
+      bool is_first = true;
+      ForEachBit(lanes & ((std::uint64_t(1) << lane) - 1),
+                 [&](std::size_t before) { is_first &= at[before] != at[lane]; });
+      first |= std::uint64_t(is_first) << lane;
+    });
+    return first;
   }
 
   [[nodiscard]] HWY_INLINE VI BackOf(VI id) const {
@@ -608,7 +618,7 @@ class BatchInTile {
                             is_flat_,
                             is_smooth_ ? line_coverage_ : nullptr};
     const VF z = Mixed(All(b_.window_z()[a]), All(b_.window_z()[b]), w.of[0]);
-    stage_.Process(source, live, StoredDepth(z, All(float(line.offset))));
+    InOrder(source, live, StoredDepth(z, All(float(line.offset))));
   }
 
   Frame& frame_;

@@ -56,7 +56,7 @@ class Sampler {
     const DF df;
     const VF s = Wrapped(place.s, t_.wrap_s), t = Wrapped(place.t, t_.wrap_t);
     if (!b_.minifies_by_levels && b_.is_linear_min == b_.is_linear_mag)
-      return At(hn::Zero(DI()), s, t, b_.is_linear_mag);
+      return InlineAt(hn::Zero(DI()), s, t, b_.is_linear_mag);
     // log2(sqrt(x)), far below any level where nothing changes.
     VF lod = hn::Mul(All(0.5f), Log2(hn::Max(place.change, All(1e-30f))));
     const float bias = t_.lod_bias + b_.lod_bias;
@@ -125,7 +125,11 @@ class Sampler {
     return {inside, is_border};
   }
 
-  [[nodiscard]] HWY_INLINE FragmentColor At(VI level, VF s, VF t, bool is_linear) const {
+  /// InlineAt() for textures with mip-maps, which call it several times.
+  [[nodiscard]] HWY_NOINLINE FragmentColor At(VI level, VF s, VF t, bool is_linear) const {
+    return InlineAt(level, s, t, is_linear);
+  }
+  [[nodiscard]] HWY_INLINE FragmentColor InlineAt(VI level, VF s, VF t, bool is_linear) const {
     const DI d;
     const DF df;
     const bool is_one = b_.levels == 1;
