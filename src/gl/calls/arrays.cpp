@@ -161,7 +161,7 @@ void submit(Context& c, const ArrayPlan& plan, GLenum mode, std::size_t count, c
   values = before;
 }
 
-/// ParameterValues of glDrawArrays and glDrawElements.
+/// Parameters of glDrawArrays and glDrawElements.
 struct Elements {
   GLenum mode;
   GLsizei count;

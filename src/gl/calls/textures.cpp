@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// TextureObject objects, their parameters and their images.
+// Texture objects, their parameters and their images.
 
 #include <algorithm>
 #include <bit>
@@ -141,7 +141,7 @@ void write_texels(Context& c, TextureObject& t, const TexelPlace& place, const s
 
 // ---- Whole images and parts.
 
-/// ParameterValues of glTexImage and glCopyTexImage that describe a level. Sizes include the border.
+/// Parameters of glTexImage and glCopyTexImage that describe a level. Sizes include the border.
 struct LevelShape {
   GLenum target;
   int level, internal_format, width, height, border;

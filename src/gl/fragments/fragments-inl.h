@@ -112,15 +112,9 @@ class FragmentStage {
   }
 
   [[nodiscard]] HWY_INLINE MI PassesAlpha(VF alpha) const {
-    const DI d;
-    const TestFunction pass(s_.color.alpha_func);
-    const VF ref = All(s_.color.alpha_ref);
-    const auto less = hn::Lt(alpha, ref), equal = hn::Eq(alpha, ref);
-    auto result = hn::Lt(ref, ref);
-    if (pass.less) result = less;
-    if (pass.equal) result = hn::Or(result, equal);
-    if (pass.greater) result = hn::Or(result, hn::Not(hn::Or(less, equal)));
-    return hn::RebindMask(d, result);
+    // Both sides are rounded to the 8 bits of the frame.
+    const VI value = hn::NearestInt(hn::Mul(Saturated(alpha), All(255)));
+    return Compared(TestFunction(s_.color.alpha_func), value, hn::NearestInt(All(s_.color.alpha_ref * 255)));
   }
 
   /// Makes the stencil and depth tests, and stores what they change.
@@ -184,7 +178,9 @@ class FragmentStage {
 
   template <class Source>
   [[nodiscard]] HWY_NOINLINE FragmentColor WithTextures(const Source& source, const FragmentColor& primary) const {
+    // A combiner may name a unit without a texture; it reads black.
     FragmentColor texels[kTextureUnits], color = primary;
+    for (FragmentColor& texel : texels) texel = AllOf(glm::vec4(0, 0, 0, 1));
     for (std::size_t i = 0; i < samplers_.size(); ++i) {
       const int unit = d_.textures[i].unit;
       texels[unit] = samplers_[i].Sample(PlaceIn(source, d_.textures[i]));
@@ -210,13 +206,11 @@ class FragmentStage {
     for (int k = 0; k < 2; ++k) {
       VF dx, dy;
       source.Changes(at + k, dx, dy);
-      if (!is_flat) {
-        VF qx, qy;
-        source.Changes(at + 2, qx, qy);
-        const VF v = k == 0 ? place.s : place.t;
-        dx = hn::Mul(hn::Sub(dx, hn::Mul(v, qx)), inverse);
-        dy = hn::Mul(hn::Sub(dy, hn::Mul(v, qy)), inverse);
-      }
+      VF qx, qy;
+      source.Changes(at + 2, qx, qy);
+      const VF v = k == 0 ? place.s : place.t;
+      dx = hn::Mul(hn::Sub(dx, hn::Mul(v, qx)), inverse);
+      dy = hn::Mul(hn::Sub(dy, hn::Mul(v, qy)), inverse);
       dx = hn::Mul(dx, All(size[k]));
       dy = hn::Mul(dy, All(size[k]));
       across = hn::Add(across, hn::Mul(dx, dx));

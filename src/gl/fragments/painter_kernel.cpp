@@ -163,9 +163,9 @@ class BatchInTile {
   }
 
   [[nodiscard]] std::uint64_t Draw() {
+    if (!b_.lines.empty()) lines_ = b_.line_lists.of(tile_.number);
     if (b_.kind == Batch::Kind::triangles && !bounds_.is_empty()) DrawTriangles();
-    if (!b_.lines.empty())
-      for (const std::uint32_t i : b_.line_lists.of(tile_.number)) DrawLine(b_.lines[i]);
+    DrawLinesBefore(~std::uint32_t(0));
     return stage_.passed();
   }
 
@@ -179,6 +179,12 @@ class BatchInTile {
     std::array<std::int32_t, 3> vertices;
   };
 
+  /// Draws lines, which are edges of the triangles before one if one side of polygons is filled and the other is not.
+  void DrawLinesBefore(std::uint32_t number) {
+    for (; !lines_.empty() && b_.lines[lines_[0]].number < number; lines_ = lines_.subspan(1))
+      DrawLine(b_.lines[lines_[0]]);
+  }
+
   void DrawTriangles() {
     const BatchColumns& from = b_.placed.small().columns();
     const auto draw = [&](std::size_t count, const auto& fetch) HWY_ATTR { DrawPacket(count, fetch, from); };
@@ -189,6 +195,7 @@ class BatchInTile {
         },
         [&](const SingleTriangle& single) HWY_ATTR {
           reader_.Finish(draw);
+          DrawLinesBefore(single.record.id >> 1);
           RowTriangle triangle{single.record, b_.single_corners[std::size_t(&single - b_.placed.singles().data())]};
           for (int k = 0; k < 3; ++k) {
             triangle.record.x[k] -= tile_.x * kSubPixels;
@@ -489,7 +496,7 @@ class BatchInTile {
           z = hn::Add(hn::Add(All(plane.k0), hn::Mul(dx, All(plane.gx))), down);
           z = hn::Min(hn::Max(z, All(plane.k_min)), All(plane.k_max));
         }
-        // VertexWeights start from doubles at every 16th pixel, so that they do not depend on the number of lanes.
+        // Weights start from doubles at every 16th pixel, so that they do not depend on the number of lanes.
         const int anchor = x & ~15;
         const VF steps = hn::ConvertTo(df, CountFrom(d, x - anchor));
         for (int k = 0; k < 2; ++k)
@@ -531,9 +538,7 @@ class BatchInTile {
     const int main = std::abs(b.x - a.x) >= std::abs(b.y - a.y) ? 0 : 1;
     const std::int64_t length = b[main] - a[main];
     if (length == 0) return;
-    // Pixels whose centre is from the first end to before the second one.
-    const int round = length > 0 ? 127 : 128;
-    const int begin = (HWY_MIN(a[main], b[main]) + round) >> 8, end = (HWY_MAX(a[main], b[main]) + round) >> 8;
+    const auto [begin, end] = pixels_between(a[main], b[main]);
     const glm::ivec2 low(rect.x0, rect.y0), high(rect.x1, rect.y1);
     const int width = HWY_MAX(int(d_.state.line.width + 0.5f), 1);
     const double inverse = 1 / double(length);
@@ -630,6 +635,7 @@ class BatchInTile {
   const PixelProbe* probe_;
   bool is_flat_, has_offset_, is_stippled_, is_smooth_ = false;
   RunReader reader_;
+  std::span<const std::uint32_t> lines_;  // that are not drawn yet
   // State of the packet.
   Packet packet_;
   VF key_[3], inverse_area_;

@@ -36,7 +36,7 @@ HWY_INLINE FragmentColor ColorOf(VU word) {
 }
 HWY_INLINE FragmentColor AllOf(const glm::vec4& c) { return {{All(c.r), All(c.g), All(c.b), All(c.a)}}; }
 
-/// TextureObject coordinates of fragments, and the greater length of their change from pixel to pixel, squared, in
+/// Texture coordinates of fragments, and the greater length of their change from pixel to pixel, squared, in
 /// texels of the base level; `change` is 0 if no filter asks for it.
 struct TexPlace {
   VF s, t, change;

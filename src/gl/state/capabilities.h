@@ -13,7 +13,7 @@ namespace frontmost::gl_detail {
 [[nodiscard]] std::optional<Capability> capability_of(GLenum name);
 /// The switch of a texture unit that is called `name`, such as GL_TEXTURE_2D or GL_TEXTURE_GEN_S, or null.
 [[nodiscard]] bool* switch_of(TextureUnitState& unit, GLenum name);
-/// The array of glEnableClientState that is called `name`, or null. TextureObject coordinates are those of the active
+/// The array of glEnableClientState that is called `name`, or null. Texture coordinates are those of the active
 /// unit.
 [[nodiscard]] ClientArray* array_of(ClientState& client, GLenum name);
 /// Whether OpenGL 1.5 has a capability with this name that is not offered here.

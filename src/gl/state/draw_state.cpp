@@ -74,7 +74,7 @@ namespace {
 
 [[nodiscard]] DrawBounds common(const DrawBounds& a, const WindowRect& r) {
   const auto last = [](int first, int size) {
-    return int(std::min<std::int64_t>(std::int64_t(first) + size, 1 << 20)) - 1;
+    return int(std::clamp<std::int64_t>(std::int64_t(first) + size - 1, -1, 1 << 20));
   };
   return {std::max(a.x0, r.x), std::max(a.y0, r.y), std::min(a.x1, last(r.x, r.width)),
           std::min(a.y1, last(r.y, r.height))};
@@ -93,8 +93,7 @@ void set_vertex_rules(DrawState& d, const MatrixStacks& matrices, const Frame& f
   const double determinant = glm::dot(a, cofactors[0]);
   glm::dmat3 normal = determinant != 0 ? cofactors / determinant : cofactors;
   if (on.has(Capability::rescale_normal)) {
-    const double length =
-        std::sqrt(normal[0][2] * normal[0][2] + normal[1][2] * normal[1][2] + normal[2][2] * normal[2][2]);
+    const double length = std::sqrt(glm::dot(normal[2], normal[2]));
     if (length > 0) normal /= length;
   }
   d.normal_matrix = glm::mat3(normal);
@@ -184,6 +183,8 @@ std::shared_ptr<const DrawState> snapshot(const DrawInput& input) {
   auto draw = std::make_shared<DrawState>();
   DrawState& d = *draw;
   d.state = input.state;
+  d.state.point.size = std::clamp(d.state.point.size, 1.0f, kMostWidth);
+  d.state.line.width = std::clamp(d.state.line.width, 1.0f, kMostWidth);
   for (int unit = 0; unit < kTextureUnits; ++unit)
     if (auto texture = texture_of(input.state.texture.units[std::size_t(unit)], unit))
       d.textures.push_back(std::move(*texture));

@@ -13,7 +13,7 @@ namespace frontmost::gl_detail {
 
 inline constexpr std::uint32_t kMostDepth = 0xFFFFFF;  ///< stored depths have 24 bits
 
-/// Both planes have `stride` entries a row, a multiple of 16, so that vectors at the right border stay in their row.
+/// All planes have `stride` entries a row, a multiple of 16, so that vectors at the right border stay in their row.
 struct Frame {
   int width = 0, height = 0;
   std::size_t stride = 0;

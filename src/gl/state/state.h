@@ -24,6 +24,7 @@ inline constexpr int kLights = 8;
 inline constexpr int kClipPlanes = 6;
 inline constexpr int kTextureUnits = 4;
 inline constexpr int kMostSize = 4096;       ///< of a texture, in texels
+inline constexpr float kMostWidth = 255;     ///< of points and lines, in pixels
 inline constexpr int kMostViewport = 16384;  ///< pixels
 inline constexpr int kModelviewDepth = 32, kProjectionDepth = 32, kTextureDepth = 10;
 inline constexpr int kAttribDepth = 16, kListDepth = 64;

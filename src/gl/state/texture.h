@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// TextureObject objects: levels of texels that batches share with the context, and the parameters of sampling.
+// Texture objects: levels of texels that batches share with the context, and the parameters of sampling.
 #pragma once
 
 #include <array>

@@ -33,7 +33,7 @@ struct WholeTriangle {
     if (!(w > 1e-30f)) return std::nullopt;
     for (int axis = 0; axis < 2; ++axis) {
       const float at = b.clip(axis)[v] / w * b.state->window_scale[axis] + b.state->window_offset[axis];
-      if (!(std::abs(at) < float(1 << 21))) return std::nullopt;
+      if (!(std::abs(at) < float(1 << 23))) return std::nullopt;
       (axis == 0 ? triangle.record.x : triangle.record.y)[k] = std::int32_t(std::nearbyint(at));
     }
   }
@@ -87,10 +87,21 @@ void PrimitiveStream::keep_draws(DrawInput& input, bool keep) {
   finish(input);
   if (keep == keeps_) return;
   keeps_ = keep;
+  if (!keep) color_before_ = depth_before_ = {};
+  forget_draws(input);
+  input.frame.ids = keep ? Buffer<std::uint32_t>(input.frame.color.size(), no_primitive) : Buffer<std::uint32_t>();
+}
+
+/// Drops kept work, because the colors are cleared, and counts anew.
+void PrimitiveStream::forget_draws(DrawInput& input) {
+  if (keeps_) {
+    run(input);
+    color_before_ = input.frame.color;
+    depth_before_ = input.frame.depth;
+  }
   kept_.clear();
   names_.clear();
   next_id_ = next_draw_ = 0;
-  input.frame.ids = keep ? Buffer<std::uint32_t>(input.frame.color.size(), no_primitive) : Buffer<std::uint32_t>();
 }
 
 PrimitiveName PrimitiveStream::name_of(std::uint32_t id) const {
@@ -107,7 +118,10 @@ std::vector<FragmentEvent> PrimitiveStream::explain(DrawInput& input, int x, int
   std::vector<FragmentEvent> events;
   if (x < 0 || y < 0 || x >= frame.width || y >= frame.height || kept_.empty()) return events;
   const std::size_t at = frame.at(x, y);
+  if (color_before_.size() != frame.color.size()) return events;  // the frame has another size since
   const std::uint32_t color = frame.color[at], depth = frame.depth[at], id = frame.ids[at];
+  frame.color[at] = color_before_[at];
+  frame.depth[at] = depth_before_[at];
   for (const Work& work : kept_) {
     const View& grid = work.state->grid;
     if (grid.width != frame.width || grid.height != frame.height) continue;

@@ -37,11 +37,7 @@ PrimitiveStream::~PrimitiveStream() = default;
 
 void PrimitiveStream::begin(DrawInput& input, GLenum mode) {
   const Batch::Kind kind = kind_of(mode);
-  // Polygons of which one side is filled and the other is not are drawn one by one, because a batch draws all its
-  // triangles before its lines.
-  const PolygonState& polygon = input.state.polygon;
-  const bool is_mixed = kind == Batch::Kind::triangles && polygon.mode[0] != polygon.mode[1];
-  if (!open_ || is_stale_ || open_->kind != kind || is_mixed) open_batch(input, kind);
+  if (!open_ || is_stale_ || open_->kind != kind) open_batch(input, kind);
   mode_ = mode;
   is_open_ = true;
   is_continued_ = false;
@@ -160,7 +156,14 @@ void PrimitiveStream::carry_on(DrawInput& input) {
   const bool has_drawn = n >= 3 || (n >= 2 && kind_of(mode_) == Batch::Kind::lines);
   // Materials of glMaterial between begin() and end() go on, too.
   std::vector<MaterialChange> runs;
-  if (!open_->material_runs.empty()) runs.push_back({0, open_->material_runs.back().materials});
+  if (const auto& all = open_->material_runs; !all.empty()) {
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      const auto after =
+          std::find_if(all.begin(), all.end(), [&](const MaterialChange& run) { return run.first > kept[i]; });
+      runs.push_back({int(i), after == all.begin() ? state_->state.lighting.materials : std::prev(after)->materials});
+    }
+    runs.push_back({int(kept.size()), all.back().materials});
+  }
   const DrawRange& range = open_->draws.back();
   const int made =
       (open_->kind == Batch::Kind::triangles ? open_->triangle_count : int(open_->lines.size())) - range.first;
@@ -263,13 +266,11 @@ void PrimitiveStream::assemble(bool is_last) {
 
 void PrimitiveStream::clear(DrawInput& input, GLbitfield mask) {
   close_batch(input);
-  if ((mask & GL_COLOR_BUFFER_BIT) != 0) {
-    if (keeps_) run(input);
-    kept_.clear();
-    names_.clear();
-    next_id_ = next_draw_ = 0;
-  }
-  submit(input, {nullptr, snapshot(input), mask, nullptr});
+  auto state = snapshot(input);
+  const DrawBounds& s = state->scissor;
+  const bool is_whole = s.x0 == 0 && s.y0 == 0 && s.x1 == input.frame.width - 1 && s.y1 == input.frame.height - 1;
+  if ((mask & GL_COLOR_BUFFER_BIT) != 0 && is_whole && state->color_mask == 0xFFFFFFFF) forget_draws(input);
+  submit(input, {nullptr, std::move(state), mask, nullptr});
 }
 
 void PrimitiveStream::draw(DrawInput& input, PixelRectangle&& rectangle) {

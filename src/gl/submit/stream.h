@@ -78,7 +78,8 @@ class PrimitiveStream {
   /// Draws everything submitted so far into the input's frame.
   void finish(DrawInput& input);
 
-  /// Keeps all work from now on until the colors are cleared, or stops doing so. Kept work needs memory, and explain().
+  /// Keeps all work from now on until the colors are cleared, or stops doing so. Kept work takes memory; explain()
+  /// needs it.
   void keep_draws(DrawInput& input, bool keep);
   /// The draw and the primitive that a running number of Frame::ids stands for, as counted since the colors were
   /// cleared. Precondition: draws are kept, and the number is of a primitive.
@@ -125,6 +126,7 @@ class PrimitiveStream {
   void run(DrawInput& input);
   void paint(const PaintTarget& target, const zbuffer_detail::Tile& tile, const Work& work) const;
   void set_limit();
+  void forget_draws(DrawInput& input);
   void name_primitives(std::uint32_t draw, std::uint32_t primitive);
   /// The batch is full: the primitive goes on in another one.
   void carry_on(DrawInput& input);
@@ -139,8 +141,9 @@ class PrimitiveStream {
   std::vector<Input> inputs_;
   std::array<MetIndex, 4096> met_;
   std::uint64_t stamp_ = 0;
-  std::vector<Work> kept_;      // since the colors were cleared
-  std::vector<IdRange> names_;  // of all ids since then
+  std::vector<Work> kept_;                             // since the colors were cleared
+  std::vector<IdRange> names_;                         // of all ids since then
+  Buffer<std::uint32_t> color_before_, depth_before_;  // planes of the frame before kept_ was drawn
   bool keeps_ = false;
   std::uint32_t next_id_ = 0, next_draw_ = 0;
   int count_ = 0, limit_ = 0;  // vertices of the open batch

@@ -63,7 +63,7 @@ bool Batch::project(int v) {
   const auto window = [&](int axis) {
     return clip(axis)[v] * inverse * state->window_scale[axis] + state->window_offset[axis];
   };
-  constexpr float kFar = 1 << 24;
+  constexpr float kFar = (1 << 22) + 4096;  // beyond the guard planes of the largest frame, whose edges still fit
   for (int axis = 0; axis < 2; ++axis) {
     const float at = window(axis);
     if (!(std::abs(at) < kFar)) return false;
@@ -171,7 +171,8 @@ void Batch::place_polygons(Isa isa) {
     for (int k = 2; k < rest.count; ++k)
       area +=
           doubled_area(record_of(*this, rest.corner[0], rest.corner[std::size_t(k - 1)], rest.corner[std::size_t(k)]));
-    if (area == 0) continue;
+    // A triangle without area covers nothing, but its edges may be those of a polygon.
+    if (area == 0 && (are_filled || d.culling != Culling::none)) continue;
     const bool is_clockwise = area < 0;
     if (d.culling != Culling::none && (d.culling == Culling::front) == is_clockwise) continue;
     const bool is_back = is_clockwise == (polygon.front_face == GL_CCW);
@@ -191,13 +192,15 @@ void Batch::place_polygons(Isa isa) {
     const Capability offset = mode == GL_LINE ? Capability::polygon_offset_line : Capability::polygon_offset_point;
     double shift = 0;
     if (d.state.capabilities.has(offset)) {
-      TriangleRecord record = record_of(*this, rest.corner[0], rest.corner[1], rest.corner[2]);
-      if (is_clockwise) {
-        std::swap(record.x[1], record.x[2]);
-        std::swap(record.y[1], record.y[2]);
-        std::swap(record.key[1], record.key[2]);
+      shift = double(polygon.offset_units);
+      for (int k = 2; k < rest.count; ++k) {
+        int second = rest.corner[std::size_t(k - 1)], third = rest.corner[std::size_t(k)];
+        if (is_clockwise) std::swap(second, third);
+        const TriangleRecord record = record_of(*this, rest.corner[0], second, third);
+        if (doubled_area(record) <= 0) continue;
+        shift = offset_of(polygon, record);
+        break;
       }
-      shift = doubled_area(record) > 0 ? offset_of(polygon, record) : 0;
     }
     std::uint32_t continues = 0;  // the stipple goes on around the triangle
     for (int k = 0; k < rest.count; ++k) {
@@ -218,6 +221,7 @@ void Batch::place_lines() {
   line_rect = {INT32_MAX, INT32_MAX, -1, -1};
   for (WindowLine line : lines) {
     int(&v)[2] = line.vertex;
+    if (line.stipple_start == 0) pixels = 0;
     const int codes[2] = {out_codes()[v[0]], out_codes()[v[1]]};
     if ((codes[0] & codes[1]) != 0) continue;
     bool is_seen = true;
@@ -230,13 +234,12 @@ void Batch::place_lines() {
     if (!is_seen || !project(v[0]) || !project(v[1])) continue;
     const std::int32_t x[2] = {place(0)[v[0]], place(0)[v[1]]}, y[2] = {place(1)[v[0]], place(1)[v[1]]};
     if (line.is_point &&
-        (x[0] < view.x * 256 || y[0] < view.y * 256 || x[0] > (std::int64_t(view.x) + view.width) * 256 ||
-         y[0] > (std::int64_t(view.y) + view.height) * 256))
+        (x[0] < std::int64_t(view.x) * 256 || y[0] < std::int64_t(view.y) * 256 ||
+         x[0] > (std::int64_t(view.x) + view.width) * 256 || y[0] > (std::int64_t(view.y) + view.height) * 256))
       continue;  // a point goes when its centre is outside
-    const std::uint32_t length = std::uint32_t(std::max(std::abs(x[1] - x[0]), std::abs(y[1] - y[0]))) / 256;
-    const std::uint32_t start = line.stipple_start == 0 ? 0 : pixels;
-    line.stipple_start = start;
-    pixels = start + length;
+    const auto& main = std::abs(x[1] - x[0]) >= std::abs(y[1] - y[0]) ? x : y;
+    line.stipple_start = pixels;
+    pixels += std::uint32_t(pixels_between(main[0], main[1]).count());
     const int reach = int(line.is_point ? state->state.point.size : state->state.line.width) / 2 + 2;
     const DrawBounds& limit = line.is_point ? bounds : window;
     const PixelRect rect{std::max((std::min(x[0], x[1]) >> 8) - reach, limit.x0),

@@ -7,6 +7,7 @@
 //    lines       vertex numbers and places, with lists by tile; points are lines from a vertex to itself
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -39,7 +40,19 @@ struct DrawRange {
   int unit;                 ///< triangles of a primitive; 0 if all are one
 };
 
-/// glPolygonOffset of a triangle, in steps of depth. Precondition: the area is positive.
+/// The pixels of one axis whose centre is from one place to before another, both in 1/256 pixel.
+struct CentreSpan {
+  int begin, end;
+
+  [[nodiscard]] int count() const { return end - begin; }
+};
+[[nodiscard]] inline CentreSpan pixels_between(std::int32_t from, std::int32_t to) {
+  const int round = to > from ? 127 : 128;
+  return {(std::min(from, to) + round) >> 8, (std::max(from, to) + round) >> 8};
+}
+
+/// glPolygonOffset of a triangle, or of a piece that clipping left of one, in steps of depth. Precondition: the area is
+/// positive.
 [[nodiscard]] double offset_of(const PolygonState& polygon, const zbuffer_detail::TriangleRecord& record);
 
 /// Materials from a vertex on, for glMaterial between glBegin and glEnd.

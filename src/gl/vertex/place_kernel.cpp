@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Places the triangles of a batch whose vertices are all inside the clip volume. Small ones are oriented and appended
+// Sorts out the triangles of a batch. Small ones inside the clip volume are placed, oriented and appended
 // to the columns; the numbers of large ones, and of triangles that a plane cuts, go to `apart`.
 
 #include "vertex/batch.h"

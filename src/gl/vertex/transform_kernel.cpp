@@ -212,7 +212,7 @@ class VertexStage {
                 Dot(AllOf({m[0][2], m[1][2], m[2][2]}), n)};
       if (d_.state.capabilities.has(Capability::normalize)) normal = Unit(normal);
     }
-    // EyeLight is computed at the place in space, not at homogeneous coordinates.
+    // Light is computed at the place in space, not at homogeneous coordinates.
     Vec3 place{eye.c[0], eye.c[1], eye.c[2]};
     if (d_.is_lit) {
       if (!hn::AllTrue(DF(), hn::Eq(eye.c[3], All(1)))) {
