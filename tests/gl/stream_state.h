@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The state of a random stream of calls.
+#pragma once
+
+#include <GL/gl.h>
+#include <GL/glext.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace frontmost::test::gl {
+
+using Matrix = std::array<double, 16>;  ///< column by column
+inline constexpr Matrix kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+using Color = std::array<float, 4>;
+using Texel = std::array<std::uint8_t, 4>;
+
+struct Vertex {
+  std::array<float, 4> position, color, texcoord;
+};
+
+struct Image {
+  int width, height;
+  GLenum format;              ///< base format, such as GL_LUMINANCE
+  std::vector<Texel> texels;  ///< as given to glTexImage2D, rows from the bottom
+};
+
+/// The state that decides what a call draws.
+struct State {
+  Matrix projection = kIdentity, modelview = kIdentity;
+  std::array<int, 4> viewport{}, scissor{};
+  std::array<double, 2> depth_range{0, 1};
+  std::array<std::array<double, 4>, 2> clip_planes{};  ///< eye space
+  bool scissor_test = false, cull_face = false, blend = false, logic = false, alpha_test = false, depth_test = false,
+       stencil_test = false, fog = false, texture = false, offset = false, stipple = false, clip_plane0 = false,
+       clip_plane1 = false, depth_mask = true;
+  GLenum culled = GL_BACK, front = GL_CCW, shade_model = GL_SMOOTH;
+  GLenum alpha_func = GL_ALWAYS, depth_func = GL_LESS, stencil_func = GL_ALWAYS, logic_op = GL_COPY;
+  float alpha_ref = 0, fog_start = 0, fog_end = 1, line_width = 1, point_size = 1;
+  int stencil_ref = 0, clear_stencil = 0, stipple_factor = 1;
+  GLuint stencil_mask = 0xFFFFFFFF, stencil_writes = 0xFFFFFFFF;
+  std::array<GLenum, 3> stencil_ops{GL_KEEP, GL_KEEP, GL_KEEP};     ///< fail, depth fail, pass
+  std::array<GLenum, 4> factors{GL_ONE, GL_ZERO, GL_ONE, GL_ZERO};  ///< source and target of color, then of alpha
+  std::array<GLenum, 2> equations{GL_FUNC_ADD, GL_FUNC_ADD};        ///< of color and alpha
+  Color blend_color{}, clear_color{}, fog_color{}, env_color{}, border_color{};
+  std::array<bool, 4> color_mask{true, true, true, true};
+  double clear_depth = 1;
+  std::array<float, 2> polygon_offset{};  ///< factor, units
+  GLushort stipple_pattern = 0xFFFF;
+  std::shared_ptr<const Image> image;
+  GLenum filter = GL_NEAREST, wrap_s = GL_REPEAT, wrap_t = GL_REPEAT, env_mode = GL_MODULATE;
+};
+
+}  // namespace frontmost::test::gl
