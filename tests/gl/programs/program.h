@@ -7,6 +7,7 @@
 #define PROGRAM_H
 
 #define GL_GLEXT_PROTOTYPES
+#include <GL/gl.h>
 #include <GL/glext.h>
 #include <GL/glu.h>
 #include <GL/osmesa.h>
