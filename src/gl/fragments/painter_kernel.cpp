@@ -545,8 +545,11 @@ class BatchInTile {
     for (int i = HWY_MAX(begin, low[main]); i < HWY_MIN(end, high[main] + 1); ++i) {
       if (!IsDrawn(line, std::uint32_t(length > 0 ? i - begin : end - 1 - i))) continue;
       const double t = double(std::int64_t(i) * 256 + 128 - a[main]) * inverse;
-      const double across = double(a[1 - main]) + t * double(b[1 - main] - a[1 - main]) - 128.0 * (width - 1);
-      const int start = int(std::ceil(across / 256)) - 1;  // a line between two pixels goes to the lower one
+      // The place across, times the length, in whole numbers: a line between two pixels goes to the lower one.
+      const std::int64_t from = std::int64_t(i) * 256 + 128 - a[main], size = std::abs(length), step = 256 * size;
+      const std::int64_t rise = (length < 0 ? -from : from) * (b[1 - main] - a[1 - main]);
+      const std::int64_t below = (a[1 - main] - 128 * (width - 1)) * size + rise - 1;
+      const int start = int((below < 0 ? below - step + 1 : below) / step);
       for (int k = HWY_MAX(start, low[1 - main]); k <= HWY_MIN(start + width - 1, high[1 - main]); ++k)
         AddFragment(line, main == 0 ? i : k, main == 0 ? k : i, t, 1);
     }

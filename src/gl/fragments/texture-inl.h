@@ -45,8 +45,12 @@ struct TexPlace {
 class Sampler {
  public:
   explicit Sampler(const BoundTexture& bound) : b_(bound), t_(bound.texture), p_(*bound.packed) {
+    // The border has the components of the base format, as texels do: luminance is red.
     for (int k = 0; k < 4; ++k) {
-      const float part = HWY_MIN(HWY_MAX(t_.border_color[k], 0.0f), 1.0f);
+      const GLenum f = b_.base_format;
+      const bool is_rgb = f == GL_RGB || f == GL_RGBA;
+      const int from = f == GL_INTENSITY || (k < 3 && !is_rgb) ? 0 : k;
+      const float part = HWY_MIN(HWY_MAX(t_.border_color[from], 0.0f), 1.0f);
       border_word_ |= std::uint32_t(part * 255 + 0.5f) << (8 * k);
     }
   }

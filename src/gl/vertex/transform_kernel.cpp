@@ -245,7 +245,8 @@ class VertexStage {
     const auto outside = [&](hn::Mask<DF> inside, int bit) HWY_ATTR {
       code = hn::Or(code, hn::IfThenZeroElse(hn::RebindMask(di, inside), hn::Set(di, bit)));
     };
-    outside(hn::And(hn::Ge(hn::Add(clip.c[2], w), zero), hn::Gt(w, zero)), 1);
+    const VF from_near = hn::Add(clip.c[2], w);
+    outside(hn::Or(hn::Gt(from_near, zero), hn::And(hn::Ge(from_near, zero), hn::Gt(w, zero))), 1);
     outside(hn::Le(clip.c[2], w), 2);
     for (int k = 0; k < 4; ++k) {
       const int axis = k / 2;

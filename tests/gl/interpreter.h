@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of a random stream of calls.
+// A plain interpreter of OpenGL 1.x, one pixel at a time, written from the specification, to compare the library with.
+//
+// Rounding is part of every result, so a pixel holds ranges: all values that the library's float arithmetic may yield.
+// A test of a fragment that rounding decides has both outcomes, and the pixel then holds either. Coverage is exact,
+// except for primitives that a plane cuts: some 1/256 pixel around their edges may be covered or not.
 #pragma once
 
 #include <GL/gl.h>
@@ -7,10 +11,20 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <vector>
 
 namespace frontmost::test::gl {
+
+/// All numbers from `low` to `high`.
+struct Range {
+  double low, high;
+
+  Range(double value = 0) : low(value), high(value) {}  // NOLINT(google-explicit-constructor)
+  Range(double l, double h) : low(l), high(h) {}
+  [[nodiscard]] bool holds(double value) const { return low <= value && value <= high; }
+};
 
 using Matrix = std::array<double, 16>;  ///< column by column
 inline constexpr Matrix kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -27,7 +41,7 @@ struct Image {
   std::vector<Texel> texels;  ///< as given to glTexImage2D, rows from the bottom
 };
 
-/// The state that decides what a call draws.
+/// The state that decides what a call draws. The product of the matrices must be exact in doubles.
 struct State {
   Matrix projection = kIdentity, modelview = kIdentity;
   std::array<int, 4> viewport{}, scissor{};
@@ -51,6 +65,23 @@ struct State {
   GLushort stipple_pattern = 0xFFFF;
   std::shared_ptr<const Image> image;
   GLenum filter = GL_NEAREST, wrap_s = GL_REPEAT, wrap_t = GL_REPEAT, env_mode = GL_MODULATE;
+};
+
+struct Pixel {
+  std::array<Range, 4> color;  ///< bytes
+  Range depth{0xFFFFFF};       ///< steps of 24 bits
+  std::size_t source = 0;      ///< of the depth: fragments of equal sources have equal depths; 0 is like no other
+  int stencil = 0;             ///< -1 if unknown
+};
+
+struct Interpreter {
+  int width, height;
+  std::vector<Pixel> pixels = std::vector<Pixel>(std::size_t(width) * std::size_t(height));  ///< rows from the bottom
+  std::map<std::vector<std::array<double, 8>>, std::size_t> sources = {};  ///< by all that a depth depends on
+
+  void clear(const State& state, GLbitfield planes);
+  /// glBegin, the vertices and glEnd.
+  void draw(const State& state, GLenum mode, const std::vector<Vertex>& vertices);
 };
 
 }  // namespace frontmost::test::gl
