@@ -85,6 +85,24 @@ TEST(Lines, AStripBeginsItsStippleAnewAlsoIfItsFirstSegmentIsClipped) {
   EXPECT_EQ(color_at(30, 10), kBlack);
 }
 
+TEST(Lines, AStippleGoesOnAroundAnOutlinedQuad) {
+  const PixelScreen screen(40);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+  glEnable(GL_LINE_STIPPLE);
+  glLineStipple(1, 0x00FF);
+  glColor3f(1, 0, 0);
+  glBegin(GL_QUADS);
+  glVertex2d(4.5, 4.5), glVertex2d(28.5, 4.5), glVertex2d(28.5, 28.5), glVertex2d(4.5, 28.5);
+  glEnd();
+  // From the last vertex to the first, 24 pixels down, and then on.
+  for (int i = 1; i < 24; ++i) {
+    EXPECT_EQ(color_at(4, 28 - i), i % 16 < 8 ? kRed : kBlack) << i;
+    EXPECT_EQ(color_at(4 + i, 4), (24 + i) % 16 < 8 ? kRed : kBlack) << i;
+    EXPECT_EQ(color_at(28, 4 + i), (48 + i) % 16 < 8 ? kRed : kBlack) << i;
+    EXPECT_EQ(color_at(28 - i, 28), (72 + i) % 16 < 8 ? kRed : kBlack) << i;
+  }
+}
+
 // A normal is divided by the length of the third row of the inverse matrix.
 TEST(Light, RescaledNormalsFollowTheSpecification) {
   const PixelScreen screen(8);

@@ -163,6 +163,12 @@ void Batch::place_polygons(Isa isa) {
   } else {
     for (int i = 0; i < triangle_count; ++i) apart.push_back(std::uint32_t(i));
   }
+  std::uint32_t outlined = ~std::uint32_t(0);  // the last triangle that has lines
+  auto is_part_of_last = [&, range = draws.begin()](std::uint32_t t) mutable {
+    while (std::next(range) != draws.end() && std::next(range)->first <= int(t)) ++range;
+    const int part = int(t) - range->first;
+    return t == outlined + 1 && (range->unit == 0 ? part > 0 : part % range->unit > 0);
+  };
   for (const std::uint32_t t : apart) {
     const int vertices[3] = {corners[0][t], corners[1][t], corners[2][t]};
     if ((out_codes()[vertices[0]] & out_codes()[vertices[1]] & out_codes()[vertices[2]]) != 0) continue;
@@ -202,8 +208,12 @@ void Batch::place_polygons(Isa isa) {
         break;
       }
     }
-    std::uint32_t continues = 0;  // the stipple goes on around the triangle
-    for (int k = 0; k < rest.count; ++k) {
+    // The stipple goes on around a quad or polygon, of which this triangle may be a part. The edge before the first
+    // vertex comes first: so the edges of a quad's two triangles follow each other.
+    std::uint32_t continues = is_part_of_last(t) ? 1 : 0;
+    outlined = t;
+    for (int i = 0; i < rest.count; ++i) {
+      const int k = i == 0 ? rest.count - 1 : i - 1;
       if (!rest.has_edge[std::size_t(k)]) continue;
       const int v = rest.corner[std::size_t(k)];
       const int next = mode == GL_LINE ? rest.corner[std::size_t((k + 1) % rest.count)] : v;
