@@ -77,6 +77,41 @@ TEST(CrewThreads, LoopsWithinLoopsShareThem) {
   EXPECT_EQ(inner_done, 12);
 }
 
+TEST(CrewThreads, AnErrandIsDoneOnce) {
+  for (int round = 0; round < 300; ++round) {
+    int done = 0;
+    Numbers inner(round % 7), meanwhile(round % 5);
+    Crew::Errand errand(crew(), [&] {
+      crew().run(2, [&] { inner.drain([](int) {}); });
+      ++done;
+    });
+    if (round % 2 == 0) crew().run(3, [&] { meanwhile.drain([](int) {}); });
+    errand.wait();
+    ASSERT_EQ(done, 1);
+    ASSERT_TRUE(inner.are_all_taken_once());
+  }
+}
+
+TEST(CrewThreads, TheMakerOfAnErrandHelpsInItsLoops) {
+  Crew& own = *new Crew;  // has one thread, which does the errand
+  std::mutex mutex;
+  std::condition_variable met;
+  int inside = 0;
+  std::atomic<bool> has_begun = false;
+  Crew::Errand errand(own, [&] {
+    has_begun = true;
+    own.run(1, [&] {
+      std::unique_lock lock(mutex);
+      ++inside;
+      met.notify_all();
+      met.wait(lock, [&] { return inside == 2; });
+    });
+  });
+  while (!has_begun) std::this_thread::yield();
+  errand.wait();
+  EXPECT_EQ(inside, 2);
+}
+
 TEST(CrewThreads, SeveralCallersShareThem) {
   std::vector<std::thread> callers;
   std::atomic<int> done{0};

@@ -6,6 +6,9 @@
 //   a thread         looks out -- work ----------------+ looks out ... sleeps
 //   a thread         in another loop's work -------------- looks out
 //
+//   Errand(work)     goes on ------------ wait(): helps in loops until the work is done
+//   a thread         looks out -- work ---------------------+ looks out ... sleeps
+//
 // Nested loops and loops of several callers share the threads: every caller does its own work, and free threads come to
 // help. A loop waits only for work that has begun. A free thread looks out for the next loop for a while before it
 // sleeps, because waking a thread takes about as long as many loops do.
@@ -44,37 +47,46 @@ class Crew {
     return *crew;
   }
 
-  /// Does `work` here and on up to `helpers` other threads at the same time. \returns once all have come back. `work`
-  /// must not throw, and must return at once if nothing is left to do.
-  void run(int helpers, const std::function<void()>& work) {
-    Job job{&work, helpers};
-    int asleep = 0;
-    {
-      const std::lock_guard lock(mutex_);
-      hire(helpers);
-      jobs_.push_back(&job);
-      places_ += helpers;
-      asleep = std::min(helpers, asleep_);
-    }
-    for (int i = 0; i < asleep; ++i) called_.notify_one();
-    work();
-    {
-      const std::lock_guard lock(mutex_);
-      std::erase(jobs_, &job);
-      places_ -= job.wanted;
-    }
-    if (spin_until([&] { return job.inside == 0; })) return;
-    std::unique_lock lock(mutex_);
-    left_.wait(lock, [&] { return job.inside == 0; });
-  }
-
- private:
   struct Job {
     const std::function<void()>* work;
     int wanted;                   ///< threads that may still join
     std::atomic<int> inside = 0;  ///< threads at work
   };
 
+  /// Does `work` here and on up to `helpers` other threads at the same time. \returns once all have come back. `work`
+  /// must not throw, and must return at once if nothing is left to do.
+  void run(int helpers, const std::function<void()>& work) {
+    Job job{&work, helpers};
+    offer(job);
+    work();
+    withdraw(job);
+    if (spin_until([&] { return job.inside == 0; })) return;
+    std::unique_lock lock(mutex_);
+    left_.wait(lock, [&] { return job.inside == 0; });
+  }
+
+  /// Work for one thread while its maker does something else.
+  class Errand {
+   public:
+    /// `work` must not throw.
+    Errand(Crew& crew, std::function<void()> work) : crew_(crew), work_(std::move(work)) { crew_.offer(job_); }
+    ~Errand() { wait(); }
+    Errand(const Errand&) = delete;
+    Errand& operator=(const Errand&) = delete;
+
+    /// Returns once the work is done. Does it here if no thread has begun it; otherwise helps in loops meanwhile.
+    void wait() {
+      if (crew_.withdraw(job_) > 0) return work_();
+      crew_.serve([&] { return job_.inside == 0; });
+    }
+
+   private:
+    Crew& crew_;
+    std::function<void()> work_;
+    Job job_{&work_, 1};
+  };
+
+ private:
   /// Waits up to 50 us without sleeping until `is_true()` holds. \returns whether it holds.
   template <class Condition>
   static bool spin_until(const Condition& is_true) {
@@ -93,7 +105,7 @@ class Crew {
     if (size_ >= helpers) return;
     if (pause_ > 0) return void(--pause_);
     try {
-      for (; size_ < helpers; ++size_) start_([this] { serve(); });
+      for (; size_ < helpers; ++size_) start_([this] { serve([] { return false; }); });
     } catch (const std::exception&) {
       // The system gives no more threads now: the existing ones do the same work, and the system is asked again later.
       constexpr int loops = 1000;
@@ -106,13 +118,37 @@ class Crew {
     return open == jobs_.end() ? nullptr : *open;
   }
 
-  void serve() {
+  /// Lets threads join the job, and wakes those that sleep.
+  void offer(Job& job) {
+    int asleep = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      hire(job.wanted);
+      jobs_.push_back(&job);
+      places_ += job.wanted;
+      asleep = std::min(job.wanted, asleep_);
+    }
+    for (int i = 0; i < asleep; ++i) called_.notify_one();
+  }
+
+  /// Lets no more threads join the job. \returns how many might still have joined.
+  int withdraw(Job& job) {
+    const std::lock_guard lock(mutex_);
+    std::erase(jobs_, &job);
+    places_ -= job.wanted;
+    return std::exchange(job.wanted, 0);
+  }
+
+  /// Works in all jobs that come until `is_over()` holds, which the end of a job must make true.
+  template <class Condition>
+  void serve(const Condition& is_over) {
     for (;;) {
-      spin_until([&] { return places_ > 0; });
+      spin_until([&] { return places_ > 0 || is_over(); });
       std::unique_lock lock(mutex_);
       ++asleep_;
-      called_.wait(lock, [&] { return open_job() != nullptr; });
+      called_.wait(lock, [&] { return is_over() || open_job() != nullptr; });
       --asleep_;
+      if (is_over()) return;
       Job& job = *open_job();
       --job.wanted, --places_, ++job.inside;
       lock.unlock();
@@ -120,6 +156,7 @@ class Crew {
       if (--job.inside > 0) continue;
       lock.lock();  // so that the notification does not fall between the caller's test and its sleep
       left_.notify_all();
+      if (asleep_ > 0) called_.notify_all();  // an errand's maker may wait for its end
     }
   }
 

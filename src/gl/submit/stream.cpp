@@ -288,7 +288,17 @@ void PrimitiveStream::finish(DrawInput& input) {
 
 void PrimitiveStream::submit(DrawInput& input, Work&& work) {
   queue_.push_back(std::move(work));
-  if (queue_.size() >= (thread_count(execution) == 1 ? 1 : kMostWaiting)) run(input);
+  if (thread_count(execution) == 1) return run(input);
+  if (queue_.size() < kMostWaiting) return;
+  settle();
+  drawn_.swap(queue_);
+  errand_.emplace(Crew::of_process(), [this, &frame = input.frame] {
+    try {
+      draw_all(frame, drawn_);
+    } catch (...) {
+      error_ = std::current_exception();
+    }
+  });
 }
 
 namespace {
@@ -328,31 +338,40 @@ void clear_tile(const PaintTarget& target, const Tile& tile, const DrawState& d,
 
 }  // namespace
 
+void PrimitiveStream::draw_all(Frame& frame, const std::vector<Work>& works) {
+  if (works.empty() || frame.width == 0) return;
+  parallel_for(execution, works.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      if (works[i].batch) works[i].batch->prepare(execution.isa);
+  });
+  std::atomic<std::uint64_t> passed{0};
+  const PaintTarget target{frame, counts_samples ? &passed : nullptr, nullptr};
+  const View& grid = works[0].state->grid;
+  parallel_for(execution, Tile::count(grid), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t number = begin; number < end; ++number) {
+      const Tile tile(number, grid);
+      for (const Work& work : works) paint(target, tile, work);
+    }
+  });
+  samples_passed += passed;
+}
+
 void PrimitiveStream::run(DrawInput& input) {
-  if (queue_.empty()) return;
-  Frame& frame = input.frame;
-  if (frame.width > 0) {
-    parallel_for(execution, queue_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
-        if (queue_[i].batch) queue_[i].batch->prepare(execution.isa);
-    });
-    std::atomic<std::uint64_t> passed{0};
-    const PaintTarget target{frame, counts_samples ? &passed : nullptr, nullptr};
-    const View& grid = queue_[0].state->grid;
-    parallel_for(execution, Tile::count(grid), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t number = begin; number < end; ++number) {
-        const Tile tile(number, grid);
-        for (const Work& work : queue_) paint(target, tile, work);
-      }
-    });
-    samples_passed += passed;
-  }
-  for (Work& work : queue_)
+  settle();
+  draw_all(input.frame, queue_);
+  drawn_.swap(queue_);
+  settle();
+}
+
+void PrimitiveStream::settle() {
+  errand_.reset();
+  for (Work& work : drawn_)
     if (keeps_)
       kept_.push_back(std::move(work));
     else if (work.batch)
       spare_.push_back(std::move(work.batch));
-  queue_.clear();
+  drawn_.clear();
+  if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
 }
 
 void PrimitiveStream::paint(const PaintTarget& target, const Tile& tile, const Work& work) const {

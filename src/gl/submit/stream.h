@@ -5,13 +5,17 @@
 //
 // A batch has the vertices of consecutive primitives that were submitted in one state. It is closed when it is full, or
 // when a primitive begins after the state changed; a primitive that a full batch cuts goes on in the next batch. Work
-// is done in the order of submission in every tile of the frame, by all threads.
+// is done in the order of submission in every tile of the frame, by all threads. While they draw a full queue, the
+// calling thread fills the next one.
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "base/crew.h"
 #include "fragments/painter.h"
 #include "frontmost/base.h"
 #include "state/frame.h"
@@ -123,7 +127,12 @@ class PrimitiveStream {
   void open_batch(DrawInput& input, Batch::Kind kind);
   void close_batch(DrawInput& input);
   void submit(DrawInput& input, Work&& work);
+  /// Draws the work of a queue.
+  void draw_all(Frame& frame, const std::vector<Work>& works);
+  /// Draws all that waits, and keeps it or takes its batches back.
   void run(DrawInput& input);
+  /// Waits for the threads that draw. \throws what they threw.
+  void settle();
   void paint(const PaintTarget& target, const zbuffer_detail::Tile& tile, const Work& work) const;
   void set_limit();
   void forget_draws(DrawInput& input);
@@ -137,6 +146,8 @@ class PrimitiveStream {
   std::unique_ptr<Batch> open_;
   std::vector<std::unique_ptr<Batch>> spare_;
   std::vector<Work> queue_;
+  std::vector<Work> drawn_;  // by the errand
+  std::exception_ptr error_;
   std::shared_ptr<const DrawState> state_;  // of the open batch, and of the next ones while is_stale_ is false
   std::vector<Input> inputs_;
   std::array<MetIndex, 4096> met_;
@@ -153,6 +164,7 @@ class PrimitiveStream {
   bool is_continued_ = false;  // it began in an earlier batch
   bool is_open_ = false;
   bool is_stale_ = true;
+  std::optional<Crew::Errand> errand_;  // is destroyed first, as it uses the rest
 };
 
 }  // namespace frontmost::gl_detail
