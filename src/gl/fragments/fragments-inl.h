@@ -45,6 +45,7 @@ class FragmentStage {
   FragmentStage(const PaintTarget& target, const DrawState& draw) : target_(target), d_(draw), s_(draw.state) {
     for (const BoundTexture& t : d_.textures) {
       needs_change_ |= t.minifies_by_levels || t.is_linear_min != t.is_linear_mag;
+      combines_ |= s_.texture.units[std::size_t(t.unit)].env_mode == GL_COMBINE;
       samplers_.emplace_back(t);
     }
     stencil_mask_ = s_.stencil.value_mask & 255;
@@ -178,9 +179,10 @@ class FragmentStage {
 
   template <class Source>
   [[nodiscard]] HWY_NOINLINE FragmentColor WithTextures(const Source& source, const FragmentColor& primary) const {
-    // A combiner may name a unit without a texture; it reads black.
     FragmentColor texels[kTextureUnits], color = primary;
-    for (FragmentColor& texel : texels) texel = AllOf(glm::vec4(0, 0, 0, 1));
+    // A combiner may name a unit without a texture; it reads black.
+    if (combines_)
+      for (FragmentColor& texel : texels) texel = AllOf(glm::vec4(0, 0, 0, 1));
     for (std::size_t i = 0; i < samplers_.size(); ++i) {
       const int unit = d_.textures[i].unit;
       texels[unit] = samplers_[i].Sample(PlaceIn(source, d_.textures[i]));
@@ -194,9 +196,10 @@ class FragmentStage {
   [[nodiscard]] HWY_INLINE TexPlace PlaceIn(const Source& source, const BoundTexture& t) const {
     const int at = kOutTexCoord + 3 * t.unit;
     TexPlace place{source.Varying(at), source.Varying(at + 1), hn::Zero(DF())};
-    const VF q = source.Varying(at + 2), inverse = hn::Div(All(1), q);
-    const bool is_flat = hn::AllTrue(DF(), hn::Eq(q, All(1)));
-    if (!is_flat) {
+    const VF q = source.Varying(at + 2);
+    VF inverse = All(1);
+    if (!hn::AllTrue(DF(), hn::Eq(q, inverse))) {
+      inverse = hn::Div(inverse, q);
       place.s = hn::Mul(place.s, inverse);
       place.t = hn::Mul(place.t, inverse);
     }
@@ -241,13 +244,15 @@ class FragmentStage {
     const bool has_logic = s_.capabilities.has(Capability::color_logic_op);
     VU kept{};
     if (d_.blends || has_logic || d_.color_mask != 0xFFFFFFFF) kept = source.Load(target_.frame.color.data());
-    if (is_over_)
-      color = Over(color, ColorOf(kept));
-    else if (d_.blends)
-      color = Blended(color, ColorOf(kept));
+    if (d_.blends && !is_over_) color = Blended(color, ColorOf(kept));
+    for (VF& v : color.c) v = Saturated(v);
+    const VF alpha = color.c[3];
+    const FragmentColor below = is_over_ ? ColorOf(kept) : FragmentColor();
     VU word = hn::Zero(du);
     for (int k = 0; k < 4; ++k) {
-      const VI byte = hn::NearestInt(hn::Mul(Saturated(color.c[k]), All(255)));
+      VF value = hn::Mul(color.c[k], All(255));
+      if (is_over_) value = Mixed(below.c[k], value, alpha);
+      const VI byte = hn::NearestInt(value);
       word = hn::Or(word, hn::Shl(hn::BitCast(du, byte), hn::Set(du, std::uint32_t(8 * k))));
     }
     if (has_logic) word = Logic(s_.color.logic_op, word, kept);
@@ -258,12 +263,6 @@ class FragmentStage {
     source.Store(target_.frame.color.data(), word, live);
   }
 
-  /// The usual blending. `kept` is from 0 to 255.
-  [[nodiscard]] static HWY_INLINE FragmentColor Over(FragmentColor from, FragmentColor kept) {
-    const VF alpha = Saturated(from.c[3]);
-    for (int k = 0; k < 4; ++k) from.c[k] = Mixed(hn::Mul(kept.c[k], All(1.0f / 255)), Saturated(from.c[k]), alpha);
-    return from;
-  }
   /// `kept` is from 0 to 255.
   [[nodiscard]] HWY_NOINLINE FragmentColor Blended(FragmentColor from, FragmentColor kept) const {
     const ColorBufferState& c = s_.color;
@@ -340,7 +339,8 @@ class FragmentStage {
   const DrawState& d_;
   const State& s_;
   std::vector<Sampler> samplers_;
-  bool needs_change_ = false, is_over_;
+  bool needs_change_ = false, combines_ = false;
+  bool is_over_;  ///< blends as usual: source alpha, and one minus source alpha
   std::uint32_t stencil_mask_;
   std::uint64_t passed_ = 0;
 };

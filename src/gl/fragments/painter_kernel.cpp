@@ -128,6 +128,7 @@ struct RowSource {
   [[nodiscard]] HWY_INLINE VF ColorOfVertex(int k) const { return Varying(kOutRed + k); }
   [[nodiscard]] HWY_INLINE VF Varying(int k) const {
     const float* const v = values[k];
+    if (v[1] == 0 && v[2] == 0) return All(v[0]);
     const VF sum = hn::Add(All(v[0]), hn::Mul(weights.of[0], All(v[1])));
     return hn::Add(sum, hn::Mul(weights.of[1], All(v[2])));
   }

@@ -45,6 +45,8 @@ struct TexPlace {
 class Sampler {
  public:
   explicit Sampler(const BoundTexture& bound) : b_(bound), t_(bound.texture), p_(*bound.packed) {
+    reads_pairs_ =
+        p_.border == 0 && (t_.wrap_s == GL_REPEAT || t_.wrap_s == GL_CLAMP_TO_EDGE || t_.wrap_s == GL_MIRRORED_REPEAT);
     // The border has the components of the base format, as texels do: luminance is red.
     for (int k = 0; k < 4; ++k) {
       const GLenum f = b_.base_format;
@@ -148,12 +150,20 @@ class Sampler {
     }
     u = hn::Sub(u, All(0.5f));
     v = hn::Sub(v, All(0.5f));
+    if (reads_pairs_ && t_.wrap_s != GL_REPEAT)
+      u = hn::Min(hn::Max(u, hn::Zero(df)), hn::ConvertTo(df, hn::Sub(width, hn::Set(d, 1))));
     const VF left = hn::Floor(u), low = hn::Floor(v);
     const VI i = hn::ConvertTo(d, left), j = hn::ConvertTo(d, low), one = hn::Set(d, 1);
-    const Texels x0 = Index(i, width, t_.wrap_s), x1 = Index(hn::Add(i, one), width, t_.wrap_s);
+    const Texels x0 = Index(i, width, t_.wrap_s);
     const VU across = Weight(hn::Sub(u, left));
-    const auto row = [&](const Texels& y)
-                         HWY_ATTR { return Between(Fetch(first, width, x0, y), Fetch(first, width, x1, y), across); };
+    const auto row = [&](const Texels& y) HWY_ATTR __attribute__((always_inline)) {
+      if (!reads_pairs_)
+        return Between(Fetch(first, width, x0, y), Fetch(first, width, Index(hn::Add(i, one), width, t_.wrap_s), y),
+                       across);
+      const TexelPair pair = PairFrom(PlaceOf(first, width, x0, y));
+      const VU value = Between(pair.left, pair.right, across);
+      return hn::IfThenElse(hn::RebindMask(DU(), y.is_border), hn::Set(DU(), border_word_), value);
+    };
     const VU lower = row(Index(j, height, t_.wrap_t));
     if (b_.is_1d) return ColorOf(lower);
     return ColorOf(Between(lower, row(Index(hn::Add(j, one), height, t_.wrap_t)), Weight(hn::Sub(v, low))));
@@ -188,13 +198,34 @@ class Sampler {
   /// The nearest texel of GL_CLAMP is never the border.
   [[nodiscard]] static GLenum Nearest(GLenum mode) { return mode == GL_CLAMP ? GLenum(GL_CLAMP_TO_EDGE) : mode; }
 
-  [[nodiscard]] HWY_INLINE VU Fetch(VI first, VI width, const Texels& x, const Texels& y) const {
+  /// Numbers of texels in the packed texture.
+  [[nodiscard]] HWY_INLINE VI PlaceOf(VI first, VI width, const Texels& x, const Texels& y) const {
     const DI d;
     const VI border = hn::Set(d, p_.border);
-    const VI stride = hn::Add(width, hn::Add(border, border));
+    const VI stride = hn::Add(width, hn::Set(d, p_.border != 0 ? 2 * p_.border : 1));
     const VI row = b_.is_1d ? hn::Zero(d) : hn::Mul(hn::Add(y.index, border), stride);
-    const VI at = hn::Add(hn::Add(first, row), hn::Add(x.index, border));
-    const VU word = hn::GatherIndex(DU(), p_.texels.data(), at);
+    return hn::Add(hn::Add(first, row), hn::Add(x.index, border));
+  }
+  /// Texels, and those to the right of them.
+  struct TexelPair {
+    VU left, right;
+  };
+  [[nodiscard]] HWY_INLINE TexelPair PairFrom(VI at) const {
+    const std::uint32_t* const texels = p_.texels.data();
+#if HWY_TARGET == HWY_SCALAR
+    return {hn::GatherIndex(DU(), texels, at), hn::GatherIndex(DU(), texels + 1, at)};
+#else
+    const DU d;
+    HWY_ALIGN_MAX std::int32_t place[kMaxLanes];
+    HWY_ALIGN_MAX std::uint32_t pairs[2 * kMaxLanes];
+    hn::Store(at, DI(), place);
+    for (std::size_t k = 0; k < hn::Lanes(d); ++k) std::memcpy(pairs + 2 * k, texels + place[k], 8);
+    const VU low = hn::Load(d, pairs), high = hn::Load(d, pairs + hn::Lanes(d));
+    return {hn::ConcatEven(d, high, low), hn::ConcatOdd(d, high, low)};
+#endif
+  }
+  [[nodiscard]] HWY_INLINE VU Fetch(VI first, VI width, const Texels& x, const Texels& y) const {
+    const VU word = hn::GatherIndex(DU(), p_.texels.data(), PlaceOf(first, width, x, y));
     const MI is_border = b_.is_1d ? x.is_border : hn::Or(x.is_border, y.is_border);
     return hn::IfThenElse(hn::RebindMask(DU(), is_border), hn::Set(DU(), border_word_), word);
   }
@@ -203,6 +234,7 @@ class Sampler {
   const TextureObject& t_;
   const PackedTexture& p_;
   std::uint32_t border_word_ = 0;
+  bool reads_pairs_;  ///< whether every texel's right neighbour follows it
 };
 
 /// GL_COMBINE of one unit. `textures` holds the colors of all units, for GL_TEXTUREi.

@@ -44,7 +44,11 @@ namespace {
     packed->first[i] = std::int32_t(packed->texels.size());
     packed->width[i] = from.width;
     packed->height[i] = from.height;
-    packed->texels.insert(packed->texels.end(), from.texels->begin(), from.texels->end());
+    const std::ptrdiff_t columns = from.width + 2 * from.border;
+    for (auto row = from.texels->begin(); row != from.texels->end(); row += columns) {
+      packed->texels.insert(packed->texels.end(), row, row + columns);
+      if (from.border == 0) packed->texels.push_back(*row);
+    }
     packed->sources.push_back(from.texels);
   }
   t.packed = packed;

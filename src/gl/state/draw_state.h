@@ -47,7 +47,8 @@ struct DrawBounds {
   [[nodiscard]] bool is_empty() const { return x1 < x0 || y1 < y0; }
 };
 
-/// The levels that sampling reads, one after another.
+/// The levels that sampling reads, one after another. Without a border, each row ends with its first texel once more:
+/// the texel to the right of any texel follows it.
 struct PackedTexture {
   std::vector<std::uint32_t> texels;
   std::int32_t first[kTextureLevels], width[kTextureLevels], height[kTextureLevels];  ///< without the border
