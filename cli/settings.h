@@ -223,7 +223,7 @@ struct VisibleSettings {
 /// Settings of frontmost gl.
 struct ProgramSettings {
   std::optional<std::string> output, script;
-  std::optional<glm::ivec2> size;
+  std::optional<glm::ivec2> size, explained;
   std::optional<int> frames;
   bool verbose = false;
 };

@@ -3,7 +3,7 @@
 //
 //   LD_LIBRARY_PATH   the folder in which these libraries have the names that programs ask for
 //   LD_PRELOAD        OpenGL comes first, so that libraries such as GLU call it, too
-//   FRONTMOST_GL_...  what the libraries are to do: OUTPUT, SIZE, SCRIPT, VERBOSE
+//   FRONTMOST_GL_...  what the libraries are to do: OUTPUT, SIZE, SCRIPT, EXPLAIN, VERBOSE
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <frontmost/files.h>
@@ -40,6 +40,13 @@ glm::ivec2 window_size_from(std::string_view text) {
   return {parse_integer(sides[0], limits), parse_integer(sides[1], limits)};
 }
 
+glm::ivec2 pixel_from(std::string_view text) {
+  const std::vector<std::string_view> places = split(text, ',');
+  constexpr NumberLimits limits{0, 16383};
+  if (places.size() != 2) throw UsageError(fmt::format("{} is not X,Y, such as 100,50", quoted(text)));
+  return {parse_integer(places[0], limits), parse_integer(places[1], limits)};
+}
+
 constexpr Option gl_options[] = {
     {"size", 0, "WxH", "Size of the program's windows, in pixels; by default as the program asks.", Group::program,
      for_gl, [](Settings& s, const Given& g) { s.program.size = window_size_from(g.text); }},
@@ -49,9 +56,12 @@ constexpr Option gl_options[] = {
      }},
     {"script", 0, "FILE",
      "Events and frames for programs that use GLUT, one a line: frames N; key CHARACTER; special F1 or left; mouse "
-     "left "
-     "down X Y; motion X Y; pointer enters; menu LABEL; reshape WIDTH HEIGHT; write FILE.",
+     "left down X Y; motion X Y; pointer enters; menu LABEL; reshape WIDTH HEIGHT; write FILE.",
      Group::program, for_gl, [](Settings& s, const Given& g) { s.program.script = g.file_name(); }},
+    {"explain", 0, "X,Y",
+     "Print every fragment that came to pixel X,Y of the last frame, counted from the upper left corner, and what "
+     "became of it: culled, clipped, failed by which test with which values, or drawn.",
+     Group::program, for_gl, [](Settings& s, const Given& g) { s.program.explained = pixel_from(g.text); }},
     {"verbose", 0, "", "Print calls of OpenGL that have no effect here.", Group::program, for_gl,
      [](Settings& s, const Given&) { s.program.verbose = true; }},
     {"output", 'o', "FILE", "The last frame: .png, .jpg or .webp; by default PROGRAM.png.", Group::output, for_gl,
@@ -100,6 +110,8 @@ void set_environment(const ProgramSettings& program) {
   if (program.script) set_variable("FRONTMOST_GL_SCRIPT", fs::absolute(*program.script, ignored).string());
   if (program.frames) set_variable("FRONTMOST_GL_SCRIPT", fmt::format(":frames {}", *program.frames));
   if (program.size) set_variable("FRONTMOST_GL_SIZE", fmt::format("{}x{}", program.size->x, program.size->y));
+  if (program.explained)
+    set_variable("FRONTMOST_GL_EXPLAIN", fmt::format("{},{}", program.explained->x, program.explained->y));
   if (program.verbose) set_variable("FRONTMOST_GL_VERBOSE", "1");
 }
 

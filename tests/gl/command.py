@@ -52,6 +52,12 @@ with tempfile.TemporaryDirectory() as name:
     expect(size(folder / "axis.png") == (320, 240) and size(folder / "small.png") == (100, 80), "the script's pictures")
     expect((folder / "axis.png").read_bytes() != (folder / "a.png").read_bytes(), "events change the picture")
 
+    done = run(window, "--explain", "160,120", "-o", "a.png", folder=folder)
+    expect(done.stdout.startswith("pixel 160,120:\ndraw ") and ": drawn: depth LESS: 0." in done.stdout,
+           f"what happened at a pixel: {done.stdout}")
+    expect("nothing came to it" in run(window, "--explain", "0,0", folder=folder).stdout, "nothing at a corner")
+    expect("outside of the picture" in run(window, "--explain", "320,0", folder=folder).stdout, "a pixel outside")
+
     (folder / "bad.txt").write_text("frames 10\nkey\n")
     refused(run(window, "--script", "bad.txt", folder=folder), "bad.txt:2")
     refused(run("./nothing", folder=folder), "./nothing")
@@ -60,4 +66,5 @@ with tempfile.TemporaryDirectory() as name:
     expect(run("/bin/sh", "--", "-c", "exit 7", folder=folder).returncode == 7, "the program's exit status")
     refused(run(window, folder=folder, FRONTMOST_GL_LIBRARIES="/nowhere"), "frontmost-gl")
     refused(run(window, "--size", "0x5", folder=folder), "size")
+    refused(run(window, "--explain", "5", folder=folder), "--explain", "X,Y")
 sys.exit(failures != 0)

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Answers to questions that OpenGL has no calls for.
 
+#include "calls/answers.h"
+
 #include <cstdio>
+#include <cstdlib>
 
 #include "calls/call.h"
 #include "frontmost/gl.h"
@@ -53,7 +56,59 @@ std::string outcome_of(const FragmentEvent& e) {
   return text;
 }
 
+std::string explanation(Context& c, int x, int y) {
+  std::string all;
+  for (const FragmentEvent& event : c.stream.explain(c, x, y)) {
+    const PrimitiveName name = c.stream.name_of(event.id);
+    all += "draw " + std::to_string(name.draw) + ", primitive " + std::to_string(name.primitive) + ": " +
+           outcome_of(event) + "\n";
+  }
+  return all;
+}
+
+/// The pixel that FRONTMOST_GL_EXPLAIN names: its column and row, counted from the upper left corner.
+struct AskedPixel {
+  int x = 0, y = 0;
+  bool is_given = false;
+
+  AskedPixel() {
+    const char* const text = std::getenv("FRONTMOST_GL_EXPLAIN");
+    if (!text) return;
+    int end = 0;
+    is_given = std::sscanf(text, "%d,%d%n", &x, &y, &end) == 2 && text[end] == 0 && x >= 0 && y >= 0;
+    if (!is_given) std::fprintf(stderr, "frontmost-gl: FRONTMOST_GL_EXPLAIN: expected x,y, not '%s'\n", text);
+  }
+};
+
+const AskedPixel& asked_pixel() {
+  static const AskedPixel pixel;
+  return pixel;
+}
+
 }  // namespace
+
+void keep_if_asked(Context& c) {
+  if (!asked_pixel().is_given) return;
+  static const int once = std::atexit([] {
+    if (thread_context) explain_if_asked(*thread_context);
+  });
+  (void)once;
+  c.stream.keep_draws(c, true);
+}
+
+void explain_if_asked(Context& c) {
+  const auto& [x, y, is_given] = asked_pixel();
+  const Frame& frame = c.frame;
+  if (!is_given || frame.width == 0) return;
+  std::string text = "it is outside of the picture, which has " + std::to_string(frame.width) + " x " +
+                     std::to_string(frame.height) + " pixels\n";
+  if (x < frame.width && y < frame.height) {
+    text = explanation(c, x, frame.height - 1 - y);
+    if (text.empty()) text = "nothing came to it since the colors were cleared\n";
+  }
+  std::printf("pixel %d,%d:\n%s", x, y, text.c_str());
+  std::fflush(stdout);
+}
 
 FRONTMOST_GL void frontmostKeepDraws(int keep) {
   client_call([=](Context& c) { c.stream.keep_draws(c, keep != 0); });
@@ -77,12 +132,7 @@ FRONTMOST_GL void frontmostGetVisible(int x, int y, int width, int height, unsig
 
 FRONTMOST_GL std::size_t frontmostExplain(int x, int y, char* text, std::size_t size) {
   return client_call([=](Context& c) -> std::size_t {
-    std::string all;
-    for (const FragmentEvent& event : c.stream.explain(c, x, y)) {
-      const PrimitiveName name = c.stream.name_of(event.id);
-      all += "draw " + std::to_string(name.draw) + ", primitive " + std::to_string(name.primitive) + ": " +
-             outcome_of(event) + "\n";
-    }
+    const std::string all = explanation(c, x, y);
     if (text && size > 0) text[all.copy(text, size - 1)] = 0;
     return all.size();
   });

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "calls/answers.h"
 #include "calls/call.h"
 #include "pixels/pack.h"
 #include "pixels/unpack.h"
@@ -88,6 +89,7 @@ bool attach(osmesa_context& c, void* buffer, int width, int height) {
   });
   if (is_first) c.gl.state.viewport.rect = c.gl.state.scissor = {0, 0, width, height};
   c.gl.stream.state_changes();
+  keep_if_asked(c.gl);
   return true;
 }
 
@@ -163,6 +165,7 @@ FRONTMOST_GL osmesa_context* OSMesaGetCurrentContext() { return current_osmesa; 
 
 FRONTMOST_GL void OSMesaDestroyContext(osmesa_context* context) {
   // Nothing is written: many programs release their memory before the context.
+  if (context) explain_if_asked(context->gl);
   if (context && context == current_osmesa) {
     current_osmesa = nullptr;
     thread_context = nullptr;
