@@ -4,7 +4,7 @@
 # bench.sh FOLDER zbuffer|abuffer|drawings [ARGS]: runs the tables of one method alone. Other words: stream [ARGS],
 # models of growing length, streamed; shade MODEL..., pictures of models one after another, beside llvmpipe's; python,
 # the module beside the library, and beside VTK and Open3D; web, the WebAssembly module beside the program, WebGL and
-# three.js, if ./dev page has built it.
+# three.js, if ./dev page has built it; gl, frames by OpenGL's calls, beside llvmpipe's.
 set -euo pipefail
 folder=$1
 shift
@@ -31,6 +31,10 @@ case "${1:-}" in
     node bench/web/speed.mjs build/web/web/frontmost.mjs build/release/frontmost out/page
     echo
     exec node bench/web/peers.mjs out/page
+    ;;
+  gl)
+    shift
+    exec python3 bench/opengl/beside.py "$folder/opengl_frames" "$@"
     ;;
   python)
     shift
