@@ -9,6 +9,8 @@
 #define FRONTMOST_GL_TEXTURE_INL_H_
 #endif
 
+#include <cstring>
+
 #include "base/highway-inl.h"
 #include "base/lane_types-inl.h"
 #include "state/draw_state.h"
