@@ -31,6 +31,19 @@ const text = (place) => new TextDecoder("latin1").decode(plane(place));
   assert.ok(greater.triangles[0].every((cell) => cell.depth === 5 && cell.passes), "255 less 250 is 5");
 }
 
+// Two surfaces in one plane: without an offset, label and board both win pixels. A polygon offset of the board by its
+// slope and one step gives the label all of its pixels, in every format. The comparisons of a pixel decide what it shows.
+for (const format of [1, 2, 3])
+  for (const [factor, units] of [[0, 0], [1, 1]]) {
+    const { all, shown, pixels, comparisons: [board, label, ...others] } = ask({ ask: "lesson.zbuffer", example: "coplanar", format, factor, units, pixel: [178, 120] });
+    assert.ok(factor === 1 ? shown === all : shown > 0 && shown < all, `${shown} of ${all}`);
+    assert.ok(board.triangle < 2 && board.passes && label.triangle >= 2 && label.stored_before === board.stored);
+    assert.equal(label.passes, label.stored < board.stored);
+    const [red, , blue] = plane(pixels).slice(4 * (120 * 320 + 178));
+    assert.deepEqual([blue > red, all, others], [label.passes, 22078, []], "blue is the label");
+    if (format === 2 && factor === 0) assert.equal(label.stored - board.stored, 1);
+  }
+
 // Interpolating 1 / z gives 4, and not 4.5.
 {
   const { depth, linear } = ask({ ask: "lesson.projection", example: "segment" });

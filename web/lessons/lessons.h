@@ -14,7 +14,8 @@
 namespace frontmost::web {
 
 /// A depth buffer that fills. {"example": "table"}: the 8 x 8 integers of the classic example, cell by cell;
-/// {"example": "picture"}: a scene, triangle by triangle.
+/// {"example": "picture"}: a scene, triangle by triangle; {"example": "coplanar"}: a board and a label in one plane,
+/// with the board's polygon offset {"factor", "units"}.
 PlainJson zbuffer_lesson(const PlainJson& question);
 /// Hidden triangles by reason, and the effect of omitting one side of all triangles.
 PlainJson culling_lesson(const PlainJson& question);

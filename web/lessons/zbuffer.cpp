@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lesson on the z-buffer: a DepthBuffer after each triangle, and the effect of each triangle on each sample.
+// The lesson on the z-buffer: a DepthBuffer after each triangle, the effect of each triangle on each sample, and two
+// surfaces in one plane.
 #include <frontmost/zbuffer.h>
 
 #include "web/lessons/lessons.h"
@@ -68,29 +69,32 @@ PlainJson table(const PlainJson& question) {
   return {{"clear", stored_depth(DepthFormat::d8, clear_of(state))}, {"triangles", std::move(triangles)}};
 }
 
-/// For each triangle that covers a pixel: its depth, the stored depth, and the result of the comparison.
-PlainJson comparisons(const LessonScene& stage, const View& view, const DepthState& state, const PlainJson& question) {
+/// For each triangle that covers the pixel: its depth, the stored depth, and the result of the comparison. `buffer` is
+/// cleared; `calls` draw at most 400 triangles.
+PlainJson comparisons(const Surfaces& surfaces, const View& view, DepthBuffer buffer, std::span<const DepthDraw> calls,
+                      const PlainJson& pixel) {
   constexpr PrimitiveId most_triangles = 400;
-  const int x = question["pixel"].at(0), y = question["pixel"].at(1);
+  const int x = pixel.at(0), y = pixel.at(1);
   const std::size_t i = std::size_t(y) * std::size_t(view.width) + std::size_t(x);
-  DepthBuffer buffer(view.width, view.height), alone(view.width, view.height);
-  buffer.clear(clear_of(state));
-  DepthState always = state;
-  always.func = DepthFunc::always;
+  DepthBuffer alone(view.width, view.height, 1, buffer.format());
   PlainJson list = PlainJson::array();
-  const PrimitiveId end =
-      std::min({stage.surfaces.primitive_count(), question.at("step").get<PrimitiveId>(), most_triangles});
-  for (PrimitiveId id = 0; id < end; ++id) {
-    alone.clear();
-    alone.draw(stage.surfaces, view, {always, id, id + 1});
-    const float before = buffer.depths()[i];
-    buffer.draw(stage.surfaces, view, {state, id, id + 1});
-    if (alone.visible(view).primitives[i] == no_primitive) continue;
-    list.push_back({{"triangle", id},
-                    {"depth", alone.depths()[i]},
-                    {"before", before},
-                    {"passes", buffer.visible(view).primitives[i] == id}});
-  }
+  for (const DepthDraw& call : calls)
+    for (PrimitiveId id = call.begin; id < std::min(call.end, most_triangles); ++id) {
+      DepthState always = call.state;
+      always.func = DepthFunc::always;
+      alone.clear();
+      alone.draw(surfaces, view, {always, id, id + 1});
+      const float before = buffer.depths()[i];
+      const std::uint32_t stored_before = buffer.stored()[i];
+      buffer.draw(surfaces, view, {call.state, id, id + 1});
+      if (alone.visible(view).primitives[i] == no_primitive) continue;
+      list.push_back({{"triangle", id},
+                      {"depth", alone.depths()[i]},
+                      {"before", before},
+                      {"stored", alone.stored()[i]},
+                      {"stored_before", stored_before},
+                      {"passes", buffer.visible(view).primitives[i] == id}});
+    }
   return list;
 }
 
@@ -103,7 +107,9 @@ PlainJson picture(const PlainJson& question) {
                     step = std::min(question.at("step").get<PrimitiveId>(), count);
   DepthBuffer buffer(view.width, view.height);
   buffer.clear(clear_of(state));
-  if (step > 0) buffer.draw(stage.surfaces, view, {state, 0, step});
+  const DepthBuffer cleared = buffer;
+  const DepthDraw call = {state, 0, step};
+  if (step > 0) buffer.draw(stage.surfaces, view, call);
   const Visible visible = buffer.visible(view);
   colors = triangle_colors(visible);
   greys.assign(colors.size(), 255);
@@ -122,14 +128,84 @@ PlainJson picture(const PlainJson& question) {
                       {"triangles", count},
                       {"pixels", place_of(colors.data(), colors.size())},
                       {"depths", place_of(greys.data(), greys.size())}};
-  if (question.contains("pixel")) answer["comparisons"] = comparisons(stage, view, state, question);
+  if (question.contains("pixel"))
+    answer["comparisons"] = comparisons(stage.surfaces, view, cleared, {&call, 1}, question["pixel"]);
   return answer;
+}
+
+/// A board, which is triangles 0 and 1, and a label in its plane, which is triangles 2 to 5.
+Scene board_and_label() {
+  constexpr double corners[][2] = {{-1.7, -1.2}, {1.7, -1.2}, {1.7, 1.2}, {-1.7, 1.2}, {0.37, -0.21},
+                                   {-1.2, -0.8}, {1.1, -0.8}, {1.1, 0.7}, {-1.2, 0.7}};
+  Scene scene;
+  Mesh mesh;
+  for (const auto& [x, y] : corners) mesh.positions.emplace_back(x, y, -5 + 0.4 * x + 0.3 * y);
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}, {4, 7, 8}, {4, 8, 5}};
+  add(scene, std::move(mesh));
+  return scene;
+}
+
+/// A colour for a label that is `steps` farther than the board: grey if equal, blue if nearer, orange if farther.
+glm::u8vec3 color_of_steps(std::int64_t steps) {
+  const glm::vec3 grey(176), end = steps < 0 ? glm::vec3(28, 84, 158) : glm::vec3(206, 92, 22);
+  const float share = steps == 0 ? 0 : std::min(0.4f + 0.1f * float(std::abs(steps)), 1.0f);
+  return glm::u8vec3(glm::mix(grey, end, share));
+}
+
+/// A board and a label in one plane, and the board's polygon offset. The answer has the draw that each pixel shows, and
+/// the steps of the depth format from the board's stored depth to the label's.
+PlainJson coplanar(const PlainJson& question) {
+  static std::vector<std::uint8_t> colors, steps;
+  const Scene scene = board_and_label();
+  const Surfaces surfaces(scene);
+  const double turn = glm::radians(question.value("turn", 0.0));
+  View view;
+  view.width = 320, view.height = 240;
+  view.world_from_eye = look_at({5 * std::sin(turn), 0, 5 * std::cos(turn) - 5}, {0, 0, -5}, {0, 1, 0});
+  view.projection = make_frustum(-0.4, 0.4, -0.3, 0.3, {1, 100});
+  view.projection.clip.near = question.value("near", 0.15);
+  std::array<DepthDraw, 2> calls = {{{{}, 0, 2}, {{}, 2, 6}}};
+  calls[0].state.offset = {question.value("factor", 0.0), question.value("units", 0.0)};
+  const DepthBuffer cleared(view.width, view.height, 1,
+                            DepthFormat(question.value("format", int(DepthFormat::d24)) & 3));
+  DepthBuffer buffer = cleared, label = cleared;
+  buffer.draw(surfaces, view, calls[0]);
+  label.draw(surfaces, view, calls[1]);
+  const Buffer<std::uint32_t> board = buffer.stored();
+  buffer.draw(surfaces, view, calls[1]);
+  const Visible covered = label.visible(view);
+  Visible visible = buffer.visible(view);
+  std::size_t shown = 0, all = 0;
+  steps.assign(4 * board.size(), 255);
+  for (std::size_t i = 0; i < board.size(); ++i) {
+    PrimitiveId& id = visible.primitives[i];
+    if (id != no_primitive) id = id < 2 ? 0 : 1;
+    const bool is_label = covered.primitives[i] != no_primitive;
+    all += is_label;
+    shown += is_label && id == 1;
+    const glm::u8vec3 color =
+        is_label ? color_of_steps(std::int64_t(label.stored()[i]) - std::int64_t(board[i])) : glm::u8vec3(64);
+    for (std::size_t c = 0; c < 3; ++c) steps[4 * i + c] = color[int(c)];
+  }
+  colors = triangle_colors(visible);
+  std::vector<WorldLine> sides;
+  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id)
+    for (const WorldLine& side : sides_of(surfaces.corners(id))) sides.push_back(side);
+  return {{"width", view.width},
+          {"height", view.height},
+          {"pixels", place_of(colors.data(), colors.size())},
+          {"steps", place_of(steps.data(), steps.size())},
+          {"sides", lines_json(view, sides)},
+          {"shown", shown},
+          {"all", all},
+          {"comparisons", comparisons(surfaces, view, cleared, calls, question.at("pixel"))}};
 }
 
 }  // namespace
 
 PlainJson zbuffer_lesson(const PlainJson& question) {
-  return question.value("example", "table") == "table" ? table(question) : picture(question);
+  const std::string example = question.value("example", "table");
+  return example == "table" ? table(question) : example == "picture" ? picture(question) : coplanar(question);
 }
 
 }  // namespace frontmost::web
