@@ -5,6 +5,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 
 #include "calls/call.h"
 #include "frontmost/gl.h"
@@ -67,46 +68,39 @@ std::string explanation(Context& c, int x, int y) {
 }
 
 /// The pixel that FRONTMOST_GL_EXPLAIN names: its column and row, counted from the upper left corner.
-struct AskedPixel {
-  int x = 0, y = 0;
-  bool is_given = false;
-
-  AskedPixel() {
+std::optional<glm::ivec2> asked_pixel() {
+  static const auto pixel = []() -> std::optional<glm::ivec2> {
     const char* const text = std::getenv("FRONTMOST_GL_EXPLAIN");
-    if (!text) return;
+    glm::ivec2 at(-1);
     int end = 0;
-    is_given = std::sscanf(text, "%d,%d%n", &x, &y, &end) == 2 && text[end] == 0 && x >= 0 && y >= 0;
-    if (!is_given) std::fprintf(stderr, "frontmost-gl: FRONTMOST_GL_EXPLAIN: expected x,y, not '%s'\n", text);
-  }
-};
-
-const AskedPixel& asked_pixel() {
-  static const AskedPixel pixel;
+    if (!text) return std::nullopt;
+    if (std::sscanf(text, "%d,%d%n", &at.x, &at.y, &end) == 2 && text[end] == 0 && at.x >= 0 && at.y >= 0) return at;
+    std::fprintf(stderr, "frontmost-gl: FRONTMOST_GL_EXPLAIN: expected x,y, not '%s'\n", text);
+    return std::nullopt;
+  }();
   return pixel;
 }
 
 }  // namespace
 
 void keep_if_asked(Context& c) {
-  if (!asked_pixel().is_given) return;
-  static const int once = std::atexit([] {
+  if (!asked_pixel()) return;
+  [[maybe_unused]] static const int once = std::atexit([] {
     if (thread_context) explain_if_asked(*thread_context);
   });
-  (void)once;
   c.stream.keep_draws(c, true);
 }
 
 void explain_if_asked(Context& c) {
-  const auto& [x, y, is_given] = asked_pixel();
-  const Frame& frame = c.frame;
-  if (!is_given || frame.width == 0) return;
-  std::string text = "it is outside of the picture, which has " + std::to_string(frame.width) + " x " +
-                     std::to_string(frame.height) + " pixels\n";
-  if (x < frame.width && y < frame.height) {
-    text = explanation(c, x, frame.height - 1 - y);
+  const std::optional<glm::ivec2> at = asked_pixel();
+  if (!at || c.frame.width == 0) return;
+  std::string text = "it is outside of the picture, which has " + std::to_string(c.frame.width) + " x " +
+                     std::to_string(c.frame.height) + " pixels\n";
+  if (at->x < c.frame.width && at->y < c.frame.height) {
+    text = explanation(c, at->x, c.frame.height - 1 - at->y);
     if (text.empty()) text = "nothing came to it since the colors were cleared\n";
   }
-  std::printf("pixel %d,%d:\n%s", x, y, text.c_str());
+  std::printf("pixel %d,%d:\n%s", at->x, at->y, text.c_str());
   std::fflush(stdout);
 }
 

@@ -447,26 +447,19 @@ FRONTMOST_GL GLboolean glAreTexturesResident(GLsizei n, const GLuint* names, GLb
   });
 }
 
-FRONTMOST_GL void glTexParameteri(GLenum target, GLenum pname, GLint v) { tex_parameter(target, pname, &v, false); }
-FRONTMOST_GL void glTexParameterf(GLenum target, GLenum pname, GLfloat v) { tex_parameter(target, pname, &v, false); }
-FRONTMOST_GL void glTexParameteriv(GLenum target, GLenum pname, const GLint* v) {
-  tex_parameter(target, pname, v, true);
-}
-FRONTMOST_GL void glTexParameterfv(GLenum target, GLenum pname, const GLfloat* v) {
-  tex_parameter(target, pname, v, true);
-}
-FRONTMOST_GL void glGetTexParameteriv(GLenum target, GLenum pname, GLint* v) {
-  get_tex_parameter(target, nullptr, pname, v);
-}
-FRONTMOST_GL void glGetTexParameterfv(GLenum target, GLenum pname, GLfloat* v) {
-  get_tex_parameter(target, nullptr, pname, v);
-}
-FRONTMOST_GL void glGetTexLevelParameteriv(GLenum target, GLint level, GLenum pname, GLint* v) {
-  get_tex_parameter(target, &level, pname, v);
-}
-FRONTMOST_GL void glGetTexLevelParameterfv(GLenum target, GLint level, GLenum pname, GLfloat* v) {
-  get_tex_parameter(target, &level, pname, v);
-}
+#define SETS(entry, value, values, is_vector) \
+  FRONTMOST_GL void entry(GLenum target, GLenum pname, value) { tex_parameter(target, pname, values, is_vector); }
+SETS(glTexParameteri, GLint v, &v, false)
+SETS(glTexParameterf, GLfloat v, &v, false)
+SETS(glTexParameteriv, const GLint* v, v, true)
+SETS(glTexParameterfv, const GLfloat* v, v, true)
+#define GETS(entry, level_entry, T)                                                                            \
+  FRONTMOST_GL void entry(GLenum target, GLenum pname, T* v) { get_tex_parameter(target, nullptr, pname, v); } \
+  FRONTMOST_GL void level_entry(GLenum target, GLint level, GLenum pname, T* v) {                              \
+    get_tex_parameter(target, &level, pname, v);                                                               \
+  }
+GETS(glGetTexParameteriv, glGetTexLevelParameteriv, GLint)
+GETS(glGetTexParameterfv, glGetTexLevelParameterfv, GLfloat)
 
 // ---- Images.
 
