@@ -333,6 +333,15 @@ TEST(Functions, AreFoundByName) {
   EXPECT_EQ(count, 336) << "functions of OpenGL 1.1";
 }
 
+TEST(Functions, SayToGlewThatThereIsADisplay) {
+  const auto display = reinterpret_cast<void* (*)()>(OSMesaGetProcAddress("glXGetCurrentDisplay"));
+  const auto version = reinterpret_cast<int (*)(void*, int*, int*)>(OSMesaGetProcAddress("glXQueryVersion"));
+  ASSERT_TRUE(display && version);
+  int major = 0, minor = 0;
+  EXPECT_TRUE(display() && version(display(), &major, &minor));
+  EXPECT_TRUE(major == 1 && minor == 2) << major << '.' << minor << ": with GLX 1.1, glewInit() fails";
+}
+
 TEST(Contexts, OnTwoThreadsAreIndependent) {
   const auto draw = [](float red, std::vector<GLubyte>* picture) {
     OffScreen screen;

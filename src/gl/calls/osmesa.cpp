@@ -248,13 +248,23 @@ FRONTMOST_GL OsmesaFunction OSMesaGetProcAddress(const char* name) {
   return own.dli_fbase == found.dli_fbase ? reinterpret_cast<OsmesaFunction>(function) : nullptr;
 }
 
-// What GLEW asks of GLX, which is not there.
+// What GLEW and PyOpenGL ask of GLX, which is not there. glewInit() succeeds if there is a display, and GLX is 1.2 or
+// later. PyOpenGL keeps arrays by context.
+FRONTMOST_GL const void* glXGetCurrentDisplay() {
+  static constexpr char display = 0;
+  return &display;
+}
+FRONTMOST_GL osmesa_context* glXGetCurrentContext() { return OSMesaGetCurrentContext(); }
 FRONTMOST_GL OsmesaFunction glXGetProcAddressARB(const GLubyte* name) {
   return OSMesaGetProcAddress(reinterpret_cast<const char*>(name));
 }
 FRONTMOST_GL_ALIAS(glXGetProcAddress, glXGetProcAddressARB);
 FRONTMOST_GL const char* glXGetClientString(void*, int) { return nullptr; }
-FRONTMOST_GL int glXQueryVersion(void*, int*, int*) { return 0; }
+FRONTMOST_GL int glXQueryVersion(void*, int* major, int* minor) {
+  *major = 1;
+  *minor = 2;
+  return 1;
+}
 
 FRONTMOST_GL void OSMesaColorClamp(GLboolean) {}
 FRONTMOST_GL void OSMesaPostprocess(osmesa_context*, const char*, unsigned) {}
