@@ -16,6 +16,7 @@
 #include <limits>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -62,10 +63,9 @@ class Bytes {
       return numbers<GLubyte>();
     } else {
       static Memory<Value> memory;
-      static const bool is_known = (cleared().push_back([] { std::fill_n(memory.begin(), 32, Value()); }), true);
+      if (!std::exchange(memory.is_known, true)) cleared().push_back([] { std::fill_n(memory.begin(), 32, Value()); });
       if constexpr (std::is_arithmetic_v<Value>)
-        for (std::size_t i = 0, count = byte() % 32 * std::size_t(is_known); i < count; ++i)
-          memory[i] = argument<Value>();
+        for (std::size_t i = 0, count = byte() % 32; i < count; ++i) memory[i] = argument<Value>();
       return memory.data();
     }
   }
@@ -79,6 +79,7 @@ class Bytes {
   template <class Value>
   struct Memory : std::vector<Value> {
     Memory() : std::vector<Value>(std::size_t(1) << (sizeof(Value) == 1 ? 22 : 16)) {}
+    bool is_known = false;
   };
 
   const std::uint8_t *next_, *end_;
@@ -155,7 +156,7 @@ void draw_elements(Bytes& bytes) {
 
 /// Lists call no lists, because two that call each other twice do not end.
 void call_lists(Bytes& bytes) {
-  GLint compiled = 0;
+  GLint compiled = -1;  // stays so inside of glBegin
   glGetIntegerv(GL_LIST_INDEX, &compiled);
   if (compiled == 0) plain<glCallLists>(bytes);
 }

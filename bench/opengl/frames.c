@@ -198,6 +198,7 @@ int main(int argc, char** argv) {
   measure("40 blended rectangles", blended_rectangles, repetitions, 1);
   measure("glClear", nothing, 5 * repetitions, 1);
   measure("glReadPixels", read_back, 5 * repetitions, 0);
+  if (glGetError() != GL_NO_ERROR) return 1;
   OSMesaDestroyContext(context);
-  return glGetError() != GL_NO_ERROR;
+  return 0;
 }

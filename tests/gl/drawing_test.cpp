@@ -5,6 +5,7 @@
 #include <array>
 #include <climits>
 #include <cmath>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -85,21 +86,30 @@ TEST(Lines, AStripBeginsItsStippleAnewAlsoIfItsFirstSegmentIsClipped) {
   EXPECT_EQ(color_at(30, 10), kBlack);
 }
 
-TEST(Lines, AStippleGoesOnAroundAnOutlinedQuad) {
-  const PixelScreen screen(40);
-  glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
-  glEnable(GL_LINE_STIPPLE);
-  glLineStipple(1, 0x00FF);
-  glColor3f(1, 0, 0);
-  glBegin(GL_QUADS);
-  glVertex2d(4.5, 4.5), glVertex2d(28.5, 4.5), glVertex2d(28.5, 28.5), glVertex2d(4.5, 28.5);
-  glEnd();
-  // From the last vertex to the first, 24 pixels down, and then on.
-  for (int i = 1; i < 24; ++i) {
-    EXPECT_EQ(color_at(4, 28 - i), i % 16 < 8 ? kRed : kBlack) << i;
-    EXPECT_EQ(color_at(4 + i, 4), (24 + i) % 16 < 8 ? kRed : kBlack) << i;
-    EXPECT_EQ(color_at(28, 4 + i), (48 + i) % 16 < 8 ? kRed : kBlack) << i;
-    EXPECT_EQ(color_at(28 - i, 28), (72 + i) % 16 < 8 ? kRed : kBlack) << i;
+// Around a square of 24 pixels a side, whose edges are lower, right, upper and left.
+TEST(Lines, AStippleGoesOnAroundAnOutline) {
+  constexpr double from = 4.5, to = 28.5;
+  constexpr double corners[4][2] = {{from, from}, {to, from}, {to, to}, {from, to}};
+  // The edge that is drawn first, and the corners in the order of vertices.
+  const std::tuple<GLenum, int, std::array<int, 4>> cases[] = {
+      {GL_QUADS, 3, {0, 1, 2, 3}}, {GL_POLYGON, 0, {0, 1, 2, 3}}, {GL_QUAD_STRIP, 0, {0, 1, 3, 2}}};
+  for (const auto& [mode, first, order] : cases) {
+    const PixelScreen screen(40);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+    glEnable(GL_LINE_STIPPLE);
+    glLineStipple(1, 0x00FF);
+    glColor3f(1, 0, 0);
+    glBegin(mode);
+    for (const int corner : order) glVertex2dv(corners[corner]);
+    glEnd();
+    for (int i = 1; i < 24; ++i) {
+      const std::pair<int, int> places[4] = {{4 + i, 4}, {28, 4 + i}, {28 - i, 28}, {4, 28 - i}};
+      for (int edge = 0; edge < 4; ++edge) {
+        const int pixels = (edge - first + 4) % 4 * 24 + i;
+        EXPECT_EQ(color_at(places[edge].first, places[edge].second), pixels % 16 < 8 ? kRed : kBlack)
+            << mode << ", edge " << edge << ", " << i;
+      }
+    }
   }
 }
 
@@ -123,6 +133,22 @@ TEST(Light, RescaledNormalsFollowTheSpecification) {
   glVertex3f(-1, 0, -1), glVertex3f(1, 0, -1), glVertex3f(1, 0, 1), glVertex3f(-1, 0, 1);
   glEnd();
   EXPECT_NEAR(color_at(4, 4)[0], 128, 1);
+}
+
+TEST(Textures, OfOneDimensionHaveNoBorderAcross) {
+  const GLubyte texels[4] = {255, 255, 255, 255};
+  for (const GLenum wrap : {GL_REPEAT, GL_CLAMP, GL_CLAMP_TO_BORDER, GL_CLAMP_TO_EDGE, GL_MIRRORED_REPEAT})
+    for (const GLenum along : {GL_REPEAT, GL_CLAMP_TO_EDGE}) {
+      const PixelScreen screen(4);
+      glTexImage1D(GL_TEXTURE_1D, 0, GL_LUMINANCE, 4, 0, GL_LUMINANCE, GL_UNSIGNED_BYTE, texels);
+      glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+      glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_WRAP_S, GLint(along));
+      glTexParameteri(GL_TEXTURE_1D, GL_TEXTURE_WRAP_T, GLint(wrap));
+      glEnable(GL_TEXTURE_1D);
+      glTexCoord1f(0);
+      glRecti(0, 0, 4, 4);
+      EXPECT_EQ(color_at(2, 2), (Rgba{255, 255, 255, 255})) << wrap << ", " << along;
+    }
 }
 
 TEST(AlphaTest, ComparesTheBitsOfTheFrame) {

@@ -44,6 +44,13 @@ for (const format of [1, 2, 3])
     if (format === 2 && factor === 0) assert.equal(label.stored - board.stored, 1);
   }
 
+for (const format of [1, 2, 3])
+  for (const near of [0.05, 1])
+    for (const turn of [-40, 15, 40]) {
+      const { all, shown } = ask({ ask: "lesson.zbuffer", example: "coplanar", format, factor: 1, units: 1, near, turn, pixel: [0, 0] });
+      assert.ok(all > 10000 && shown === all, `${shown} of ${all}`);
+    }
+
 // Interpolating 1 / z gives 4, and not 4.5.
 {
   const { depth, linear } = ask({ ask: "lesson.projection", example: "segment" });

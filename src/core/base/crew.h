@@ -15,6 +15,7 @@
 #pragma once
 
 #include <pthread.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -51,6 +52,7 @@ class Crew {
     const std::function<void()>* work;
     int wanted;                   ///< threads that may still join
     std::atomic<int> inside = 0;  ///< threads at work
+    bool is_errand = false;
   };
 
   /// Does `work` here and on up to `helpers` other threads at the same time. \returns once all have come back. `work`
@@ -75,7 +77,9 @@ class Crew {
     Errand& operator=(const Errand&) = delete;
 
     /// Returns once the work is done. Does it here if no thread has begun it; otherwise helps in loops meanwhile.
+    /// A forked process, which has no thread that does the work, returns at once.
     void wait() {
+      if (getpid() != maker_) return;
       if (crew_.withdraw(job_) > 0) return work_();
       crew_.serve([&] { return job_.inside == 0; });
     }
@@ -83,7 +87,8 @@ class Crew {
    private:
     Crew& crew_;
     std::function<void()> work_;
-    Job job_{&work_, 1};
+    Job job_{&work_, 1, 0, true};
+    pid_t maker_ = getpid();
   };
 
  private:
@@ -153,10 +158,11 @@ class Crew {
       --job.wanted, --places_, ++job.inside;
       lock.unlock();
       (*job.work)();
+      const bool is_errand = job.is_errand;
       if (--job.inside > 0) continue;
       lock.lock();  // so that the notification does not fall between the caller's test and its sleep
       left_.notify_all();
-      if (asleep_ > 0) called_.notify_all();  // an errand's maker may wait for its end
+      if (is_errand) called_.notify_all();  // its maker may sleep
     }
   }
 

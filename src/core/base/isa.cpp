@@ -65,7 +65,8 @@ std::vector<Isa> find_available() {
 }  // namespace
 
 std::span<const Isa> available_isas() {
-  static const std::vector<Isa> found = find_available();
+  // Never destroyed, because threads may draw while the process ends.
+  static const auto& found = *new std::vector<Isa>(find_available());
   return found;
 }
 

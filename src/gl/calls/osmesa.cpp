@@ -78,7 +78,10 @@ bool attach(osmesa_context& c, void* buffer, int width, int height) {
   if (c.buffer == buffer && has_size) return true;
   try {
     c.gl.finish();
-    if (!has_size) c.gl.frame.resize(width, height);
+    if (!has_size) {
+      c.gl.frame.resize(width, height);
+      c.gl.stream.forget_draws(c.gl);
+    }
   } catch (const std::exception&) {
     return false;
   }
@@ -261,8 +264,8 @@ FRONTMOST_GL OsmesaFunction glXGetProcAddressARB(const GLubyte* name) {
 FRONTMOST_GL_ALIAS(glXGetProcAddress, glXGetProcAddressARB);
 FRONTMOST_GL const char* glXGetClientString(void*, int) { return nullptr; }
 FRONTMOST_GL int glXQueryVersion(void*, int* major, int* minor) {
-  *major = 1;
-  *minor = 2;
+  if (major) *major = 1;
+  if (minor) *minor = 2;
   return 1;
 }
 

@@ -460,6 +460,8 @@ SETS(glTexParameterfv, const GLfloat* v, v, true)
   }
 GETS(glGetTexParameteriv, glGetTexLevelParameteriv, GLint)
 GETS(glGetTexParameterfv, glGetTexLevelParameterfv, GLfloat)
+#undef SETS
+#undef GETS
 
 // ---- Images.
 

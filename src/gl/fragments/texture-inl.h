@@ -50,13 +50,15 @@ class Sampler {
     reads_pairs_ =
         p_.border == 0 && (t_.wrap_s == GL_REPEAT || t_.wrap_s == GL_CLAMP_TO_EDGE || t_.wrap_s == GL_MIRRORED_REPEAT);
     // The border has the components of the base format, as texels do: luminance is red.
+    const GLenum f = b_.base_format;
     for (int k = 0; k < 4; ++k) {
-      const GLenum f = b_.base_format;
       const bool is_rgb = f == GL_RGB || f == GL_RGBA;
       const int from = f == GL_INTENSITY || (k < 3 && !is_rgb) ? 0 : k;
       const float part = HWY_MIN(HWY_MAX(t_.border_color[from], 0.0f), 1.0f);
       border_word_ |= std::uint32_t(part * 255 + 0.5f) << (8 * k);
     }
+    if (f == GL_RGB || f == GL_LUMINANCE) border_word_ |= 0xFF000000;
+    if (f == GL_ALPHA) border_word_ &= 0xFF000000;
   }
 
   /// Colors from 0 to 255.
@@ -164,7 +166,7 @@ class Sampler {
                        across);
       const TexelPair pair = PairFrom(PlaceOf(first, width, x0, y));
       const VU value = Between(pair.left, pair.right, across);
-      return hn::IfThenElse(hn::RebindMask(DU(), y.is_border), hn::Set(DU(), border_word_), value);
+      return b_.is_1d ? value : hn::IfThenElse(hn::RebindMask(DU(), y.is_border), hn::Set(DU(), border_word_), value);
     };
     const VU lower = row(Index(j, height, t_.wrap_t));
     if (b_.is_1d) return ColorOf(lower);

@@ -291,10 +291,10 @@ void PrimitiveStream::submit(DrawInput& input, Work&& work) {
   if (thread_count(execution) == 1) return run(input);
   if (queue_.size() < kMostWaiting) return;
   settle();
-  drawn_.swap(queue_);
+  in_errand_.swap(queue_);
   errand_.emplace(Crew::of_process(), [this, &frame = input.frame] {
     try {
-      draw_all(frame, drawn_);
+      draw_all(frame, in_errand_);
     } catch (...) {
       error_ = std::current_exception();
     }
@@ -359,18 +359,18 @@ void PrimitiveStream::draw_all(Frame& frame, const std::vector<Work>& works) {
 void PrimitiveStream::run(DrawInput& input) {
   settle();
   draw_all(input.frame, queue_);
-  drawn_.swap(queue_);
+  in_errand_.swap(queue_);
   settle();
 }
 
 void PrimitiveStream::settle() {
   errand_.reset();
-  for (Work& work : drawn_)
+  for (Work& work : in_errand_)
     if (keeps_)
       kept_.push_back(std::move(work));
     else if (work.batch)
       spare_.push_back(std::move(work.batch));
-  drawn_.clear();
+  in_errand_.clear();
   if (error_) std::rethrow_exception(std::exchange(error_, nullptr));
 }
 

@@ -5,8 +5,8 @@
 //
 // A batch has the vertices of consecutive primitives that were submitted in one state. It is closed when it is full, or
 // when a primitive begins after the state changed; a primitive that a full batch cuts goes on in the next batch. Work
-// is done in the order of submission in every tile of the frame, by all threads. While they draw a full queue, the
-// calling thread fills the next one.
+// is done in the order of submission in every tile of the frame. The other threads draw a full queue while the calling
+// thread fills the next one, and helps them once that is full, too.
 #pragma once
 
 #include <cstdint>
@@ -85,6 +85,8 @@ class PrimitiveStream {
   /// Keeps all work from now on until the colors are cleared, or stops doing so. Kept work takes memory; explain()
   /// needs it.
   void keep_draws(DrawInput& input, bool keep);
+  /// Drops kept work, because the colors are cleared or the frame has another size, and counts anew.
+  void forget_draws(DrawInput& input);
   /// The draw and the primitive that a running number of Frame::ids stands for, as counted since the colors were
   /// cleared. Precondition: draws are kept, and the number is of a primitive.
   [[nodiscard]] PrimitiveName name_of(std::uint32_t id) const;
@@ -135,7 +137,6 @@ class PrimitiveStream {
   void settle();
   void paint(const PaintTarget& target, const zbuffer_detail::Tile& tile, const Work& work) const;
   void set_limit();
-  void forget_draws(DrawInput& input);
   void name_primitives(std::uint32_t draw, std::uint32_t primitive);
   /// The batch is full: the primitive goes on in another one.
   void carry_on(DrawInput& input);
@@ -146,7 +147,7 @@ class PrimitiveStream {
   std::unique_ptr<Batch> open_;
   std::vector<std::unique_ptr<Batch>> spare_;
   std::vector<Work> queue_;
-  std::vector<Work> drawn_;  // by the errand
+  std::vector<Work> in_errand_;  // what the errand draws
   std::exception_ptr error_;
   std::shared_ptr<const DrawState> state_;  // of the open batch, and of the next ones while is_stale_ is false
   std::vector<Input> inputs_;

@@ -208,13 +208,13 @@ void Batch::place_polygons(Isa isa) {
         break;
       }
     }
-    // The stipple goes on around a quad or polygon, of which this triangle may be a part. Unless it is clipped, the
-    // edge before the first vertex comes first: so the edges of a quad's two triangles follow each other.
+    // The stipple goes on around a quad or polygon, of which this triangle may be a part. The first one of a quad has
+    // the edges to its first vertex and from it, in this order.
     std::uint32_t continues = is_part_of_last(t) ? 1 : 0;
     outlined = t;
-    const bool is_cut = rest.count > 3 || rest.corner[1] != vertices[1] || rest.corner[2] != vertices[2];
+    const bool begins_at_last = rest.count == 3 && rest.has_edge[2] && !rest.has_edge[1];
     for (int i = 0; i < rest.count; ++i) {
-      const int k = is_cut ? i : (i + 2) % 3;
+      const int k = begins_at_last ? (i + 2) % 3 : i;
       if (!rest.has_edge[std::size_t(k)]) continue;
       const int v = rest.corner[std::size_t(k)];
       const int next = mode == GL_LINE ? rest.corner[std::size_t((k + 1) % rest.count)] : v;

@@ -143,9 +143,9 @@ function coplanarFigure(): HTMLElement {
   let pixel: [number, number] = [178, 120];
 
   function tell({ triangle, stored, stored_before: before }: Answer): [string, string, string] {
-    const steps = Math.abs(stored - before), nearer = stored < before;
-    const by = triangle < 2 ? "" : steps === 0 ? say({ en: ", equal", zh: "，相等" })
-      : say({ en: `, ${steps.toLocaleString()} ${steps === 1 ? "step" : "steps"} ${nearer ? "nearer" : "farther"}`, zh: `，${nearer ? "近" : "远"} ${steps.toLocaleString()} 步` });
+    const difference = Math.abs(stored - before), nearer = stored < before;
+    const by = triangle < 2 ? "" : difference === 0 ? say({ en: ", equal", zh: "，相等" })
+      : say({ en: `, ${difference.toLocaleString()} ${difference === 1 ? "step" : "steps"} ${nearer ? "nearer" : "farther"}`, zh: `，${nearer ? "近" : "远"} ${difference.toLocaleString()} 步` });
     const name = triangle < 2 ? say({ en: "Board", zh: "木板" }) : say({ en: "Label", zh: "标签" });
     return [name + say({ en: `, triangle ${triangle}`, zh: `，三角形 ${triangle}` }) + by, stored.toLocaleString(), before.toLocaleString()];
   }
