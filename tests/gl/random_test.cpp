@@ -299,8 +299,9 @@ TEST(RandomStreams, EqualTheInterpreter) {
     EXPECT_EQ(compare(stream, drawn(stream), doubtful, deep), "") << "seed " << seed;
     pixels += stream.width * stream.height;
   }
-  EXPECT_LT(doubtful, pixels / 30);
-  EXPECT_LT(deep, pixels / 30);
+  // 3 % of a hundred streams; a sanitizer runs a few, of which one may have more.
+  EXPECT_LT(doubtful, pixels / 15);
+  EXPECT_LT(deep, pixels / 15);
 }
 
 TEST(RandomStreams, DoNotDependOnThreadsOrInstructionSets) {
