@@ -59,9 +59,8 @@ constexpr Option gl_options[] = {
      "left down X Y; motion X Y; pointer enters; menu LABEL; reshape WIDTH HEIGHT; write FILE.",
      Group::program, for_gl, [](Settings& s, const Given& g) { s.program.script = g.file_name(); }},
     {"explain", 0, "X,Y",
-     "Print every fragment that came to pixel X,Y since the colors were last cleared, counted from the upper left "
-     "corner, and what "
-     "became of it: culled, clipped, failed by which test with which values, or drawn.",
+     "Print every fragment that came to a pixel since the colors were last cleared, and what became of it: culled, "
+     "clipped, failed by which test with which values, or drawn. X and Y count from the upper left corner.",
      Group::program, for_gl, [](Settings& s, const Given& g) { s.program.explained = pixel_from(g.text); }},
     {"verbose", 0, "", "Print calls of OpenGL that have no effect here.", Group::program, for_gl,
      [](Settings& s, const Given&) { s.program.verbose = true; }},

@@ -299,9 +299,10 @@ TEST(RandomStreams, EqualTheInterpreter) {
     EXPECT_EQ(compare(stream, drawn(stream), doubtful, deep), "") << "seed " << seed;
     pixels += stream.width * stream.height;
   }
-  // 3 % of a hundred streams; a sanitizer runs a few, of which one may have more.
-  EXPECT_LT(doubtful, pixels / 15);
-  EXPECT_LT(deep, pixels / 15);
+  // A sanitizer draws a dozen streams only, of which one has many such pixels.
+  const int part = seeds(100) < 100 ? 15 : 30;
+  EXPECT_LT(doubtful, pixels / part);
+  EXPECT_LT(deep, pixels / part);
 }
 
 TEST(RandomStreams, DoNotDependOnThreadsOrInstructionSets) {

@@ -149,6 +149,21 @@ struct ClippedCorners {
   return r;
 }
 
+/// glPolygonOffset of what is left of a triangle whose edges or corners are drawn, in steps of depth.
+[[nodiscard]] double outline_offset(const Batch& b, const ClippedCorners& rest, bool is_clockwise, GLenum mode) {
+  const PolygonState& polygon = b.state->state.polygon;
+  if (!b.state->state.capabilities.has(mode == GL_LINE ? Capability::polygon_offset_line
+                                                       : Capability::polygon_offset_point))
+    return 0;
+  for (int k = 2; k < rest.count; ++k) {
+    int second = rest.corner[std::size_t(k - 1)], third = rest.corner[std::size_t(k)];
+    if (is_clockwise) std::swap(second, third);
+    const TriangleRecord record = record_of(b, rest.corner[0], second, third);
+    if (doubled_area(record) > 0) return offset_of(polygon, record);
+  }
+  return double(polygon.offset_units);
+}
+
 }  // namespace
 
 void Batch::place_polygons(Isa isa) {
@@ -195,19 +210,7 @@ void Batch::place_polygons(Isa isa) {
       }
       continue;
     }
-    const Capability offset = mode == GL_LINE ? Capability::polygon_offset_line : Capability::polygon_offset_point;
-    double shift = 0;
-    if (d.state.capabilities.has(offset)) {
-      shift = double(polygon.offset_units);
-      for (int k = 2; k < rest.count; ++k) {
-        int second = rest.corner[std::size_t(k - 1)], third = rest.corner[std::size_t(k)];
-        if (is_clockwise) std::swap(second, third);
-        const TriangleRecord record = record_of(*this, rest.corner[0], second, third);
-        if (doubled_area(record) <= 0) continue;
-        shift = offset_of(polygon, record);
-        break;
-      }
-    }
+    const double shift = outline_offset(*this, rest, is_clockwise, mode);
     // The stipple goes on around a quad or polygon, of which this triangle may be a part. The first one of a quad has
     // the edges to its first vertex and from it, in this order.
     std::uint32_t continues = is_part_of_last(t) ? 1 : 0;
