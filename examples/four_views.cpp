@@ -12,7 +12,7 @@ int main(int count, char** arguments) try {
   const Surfaces surfaces(scene);
   const Sheet sheet =
       draw_sheet(surfaces, {.views = {NamedView::front, NamedView::top, NamedView::left, NamedView::iso},
-                            .dimensions = true,
+                            .dimensions = frontmost::Dimensioning::diameters,
                             .hidden = HiddenLines::dashed,
                             .page = named_paper("a3"),
                             .title_block = TitleBlock{.title = scene.name, .author = "E. Example"}});

@@ -16,6 +16,11 @@ FRONTMOST_WORDS(frontmost::HiddenLines, "hidden",
                 {{frontmost::HiddenLines::none, "none"},
                  {frontmost::HiddenLines::dashed, "dashed"},
                  {frontmost::HiddenLines::thin, "thin"}});
+FRONTMOST_WORDS(frontmost::Dimensioning, "dimensions",
+                {{frontmost::Dimensioning::none, "none"},
+                 {frontmost::Dimensioning::overall, "overall"},
+                 {frontmost::Dimensioning::diameters, "diameters"},
+                 {frontmost::Dimensioning::holes, "holes"}});
 FRONTMOST_WORDS(frontmost::DrawingStyle, "style",
                 {{frontmost::DrawingStyle::technical, "technical"}, {frontmost::DrawingStyle::figure, "figure"}});
 FRONTMOST_WORDS(frontmost::ProjectionMethod, "projection",
@@ -91,7 +96,7 @@ std::optional<TitleBlock> title_of(const std::optional<std::map<std::string, std
 }
 
 HeldPage sheet_of(const std::shared_ptr<HeldSurfaces>& held, const py::object& views, const py::list& sections,
-                  ProjectionMethod projection, bool dimensions, HiddenLines hidden,
+                  ProjectionMethod projection, Dimensioning dimensions, HiddenLines hidden,
                   const std::optional<std::vector<NamedView>>& hidden_views, DrawingStyle style,
                   const std::optional<double>& pen, const std::optional<double>& crease_angle,
                   const std::optional<double>& shortest_stroke, const std::optional<bool>& centre_lines, bool plot,
@@ -259,14 +264,15 @@ void bind_sheets(py::module_& m) {
       });
   py::class_<HeldSurfaces, std::shared_ptr<HeldSurfaces>>(m.attr("Surfaces"))
       .def("draw_sheet", &sheet_of, "views"_a = py::make_tuple("front", "top", "left"), py::kw_only(),
-           "sections"_a = py::list(), "projection"_a = ProjectionMethod::first_angle, "dimensions"_a = false,
-           "hidden"_a = HiddenLines::none, "hidden_views"_a = py::none(), "style"_a = DrawingStyle::technical,
-           "pen"_a = py::none(), "crease_angle"_a = py::none(), "shortest_stroke"_a = py::none(),
-           "centre_lines"_a = py::none(), "plot"_a = false, "page"_a = py::none(), "margin"_a = 10.0,
-           "scale"_a = py::none(), "standard_scale"_a = py::none(), "millimetres_per_unit"_a = py::none(),
-           "in_inches"_a = py::none(), "title_block"_a = py::none(), "hatch"_a = py::none(), "stipple"_a = py::none(),
-           "hatch_angle"_a = 45.0, "light"_a = py::none(), "casts_shadows"_a = true, "keeps_picture"_a = false,
-           "threads"_a = 0, "progress"_a = py::none(), doc("Surfaces.draw_sheet"))
+           "sections"_a = py::list(), "projection"_a = ProjectionMethod::first_angle,
+           "dimensions"_a = Dimensioning::none, "hidden"_a = HiddenLines::none, "hidden_views"_a = py::none(),
+           "style"_a = DrawingStyle::technical, "pen"_a = py::none(), "crease_angle"_a = py::none(),
+           "shortest_stroke"_a = py::none(), "centre_lines"_a = py::none(), "plot"_a = false, "page"_a = py::none(),
+           "margin"_a = 10.0, "scale"_a = py::none(), "standard_scale"_a = py::none(),
+           "millimetres_per_unit"_a = py::none(), "in_inches"_a = py::none(), "title_block"_a = py::none(),
+           "hatch"_a = py::none(), "stipple"_a = py::none(), "hatch_angle"_a = 45.0, "light"_a = py::none(),
+           "casts_shadows"_a = true, "keeps_picture"_a = false, "threads"_a = 0, "progress"_a = py::none(),
+           doc("Surfaces.draw_sheet"))
       .def("draw_figure", &figure_of, "view"_a, py::kw_only(), "tolerance"_a = 6.0, "visible_only"_a = true,
            "merges_neighbours"_a = false, "most_polygons"_a = 2000000, "shading"_a = Shading::lit,
            "background"_a = py::make_tuple(1.0, 1.0, 1.0), "shadows"_a = Shadows::map, "opacity"_a = 1.0f,

@@ -93,8 +93,8 @@ constexpr Option drawing_options[] = {
      "it.",
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.pen = g.number(); }},
     {"crease-angle", 0, "DEGREES",
-     "Draw the edges whose two faces meet at more than this angle, 0 to 180. By default the curvature of the surfaces "
-     "on both sides decides.",
+     "Draw the edges whose two faces meet at more than this angle, 0 to 180. By default the edges that the file "
+     "states, as STEP does; else the curvature of the surfaces on both sides decides.",
      Group::drawing, for_lines,
      [](Settings& s, const Given& g) {
        s.drawing.sheet.crease_angle = glm::radians(g.number({0, 180}));
@@ -132,7 +132,7 @@ constexpr Option drawing_options[] = {
      "fit otherwise.",
      Group::drawing, for_lines, set_scale},
     {"unit", 0, "mm|cm|m|in",
-     "Length unit of the model's coordinates; by default that of the 3MF file, m for glTF, mm for other formats.",
+     "Length unit of the model's coordinates; by default that of the file, m for glTF, mm where the file states none.",
      Group::drawing, for_lines,
      [](Settings& s, const Given& g) {
        s.drawing.sheet.millimetres_per_unit = length_units[g.choice<int>()].millimetres;
@@ -159,10 +159,11 @@ constexpr Option drawing_options[] = {
      "projection; yes by default with --views, unless --style figure is given.",
      Group::drawing, for_lines,
      [](Settings& s, const Given& g) { s.drawing.sheet.centre_lines = g.choice<int>() == 0; }},
-    {"dimensions", 0, "",
-     "Write dimensions on a sheet of --views: overall width, height and depth, and the diameters of circles, each "
-     "once, in the --dimension-unit.",
-     Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.sheet.dimensions = true; }},
+    {"dimensions", 0, "overall|diameters|holes",
+     "Write dimensions on a sheet of --views, each once, in the --dimension-unit. overall: width, height and depth. "
+     "diameters: also those of circles. holes: also the positions of circles, from the lower left corner of the view.",
+     Group::drawing, for_lines,
+     [](Settings& s, const Given& g) { s.drawing.sheet.dimensions = Dimensioning(1 + g.choice<int>()); }},
     {"plot", 0, "",
      "Prepare the drawing for pen plotters: strokes are joined across objects and ordered for few lifts of the pen; "
      "every dash is a line of its own.",

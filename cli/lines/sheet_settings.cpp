@@ -40,7 +40,7 @@ void check_views(const Settings& s) {
   if (s.drawing.sheet.views.empty() && s.drawing.sheet.hidden_views) throw UsageError("--hidden-views needs --views");
   if (!s.drawing.is_sheet()) {
     if (s.drawing.projection) throw UsageError("--projection needs --views");
-    if (s.drawing.sheet.dimensions) throw UsageError("--dimensions needs --views");
+    if (s.drawing.sheet.dimensions != Dimensioning::none) throw UsageError("--dimensions needs --views");
     return;
   }
   const char* const sheet = s.drawing.sheet.views.empty() ? "--sections" : "--views";

@@ -341,6 +341,14 @@ struct SectionView {
   std::optional<double> at = std::nullopt;
 };
 
+/// The dimensions on a sheet, after ISO 129. Each level has those before it.
+enum class Dimensioning : std::uint8_t {
+  none,
+  overall,    ///< width, height and depth
+  diameters,  ///< diameters of circles and cylinders that are seen along their axes
+  holes,      ///< positions of these, from the lower left corner of their view
+};
+
 /// Options of sheets. Millimetres are on paper.
 struct SheetOptions {
   // The views of the sheet, in parallel projection at one scale. Views are aligned with their neighbours.
@@ -349,8 +357,7 @@ struct SheetOptions {
   /// marks the plane.
   std::vector<SectionView> sections{};
   ProjectionMethod projection = ProjectionMethod::first_angle;  ///< where views stand around the front view
-  /// True: the sheet shows overall sizes and diameters, after ISO 129. Needs views.
-  bool dimensions = false;
+  Dimensioning dimensions = Dimensioning::none;                 ///< needs views
 
   // How lines are drawn.
   HiddenLines hidden = HiddenLines::none;
@@ -414,7 +421,7 @@ struct Sheet {
   std::optional<double> scale;   ///< none in perspective
   std::vector<DrawnView> views;  ///< whole views, then sections, in their order
   bool is_empty = false;         ///< no line of the model is on the sheet
-  std::size_t left_out = 0;      ///< number of diameters without room
+  std::size_t left_out = 0;      ///< number of diameters and positions without room
   std::size_t undrawn = 0;       ///< number of diameters of cylinders seen along their axes, but hidden and not drawn
   std::size_t prisms = 0;        ///< number of diameters of cylinders of 7 to 17 sides, which count as polygons
 };

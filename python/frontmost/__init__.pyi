@@ -338,7 +338,7 @@ class Surfaces:
         """
     def draw_sheet(self, views: Sequence[Direction] | View = ("front", "top", "left"), *,
                    sections: list[Direction | tuple[Direction, float]] = [],
-                   projection: Literal["none", "first_angle", "third_angle"] = "first_angle", dimensions: bool = False,
+                   projection: Literal["none", "first_angle", "third_angle"] = "first_angle", dimensions: Literal["none", "overall", "diameters", "holes"] = "none",
                    hidden: Hidden = "none", hidden_views: list[Direction] | None = None,
                    style: Style = "technical", pen: float | None = None,
                    crease_angle: float | None = None, shortest_stroke: float | None = None,

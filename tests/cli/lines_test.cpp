@@ -191,7 +191,7 @@ TEST_F(LinesCommand, SheetsHaveDimensionsWhereTheyAreAskedFor) {
   write("peg.obj", peg_obj(10, 40));
   const std::string sheet = "peg.obj --up +z --views front,top,iso --page a3 --scale 1:1 ";
   EXPECT_EQ(layer_named(drawn(sheet), "7 dimensions"), nullptr);
-  const json page = drawn(sheet + "--dimensions");
+  const json page = drawn(sheet + "--dimensions diameters");
   const json* const sizes = layer_named(page, "7 dimensions");
   ASSERT_NE(sizes, nullptr);
   ASSERT_EQ((*sizes)["groups"].size(), 2u);
@@ -203,23 +203,23 @@ TEST_F(LinesCommand, SheetsHaveDimensionsWhereTheyAreAskedFor) {
         EXPECT_GE(point[0].get<double>(), 5);
         EXPECT_GE(point[1].get<double>(), 5);
       }
-  const json box = drawn("box.obj --up +z --views front,top,left --page a3 --scale 1:1 --dimensions");
+  const json box = drawn("box.obj --up +z --views front,top,left --page a3 --scale 1:1 --dimensions diameters");
   ASSERT_NE(layer_named(box, "7 dimensions"), nullptr);
   EXPECT_EQ((*layer_named(box, "7 dimensions"))["groups"][0]["paths"].size(), 15u);
-  succeed("lines " + sheet + "--dimensions -o peg.dxf --plot");
+  succeed("lines " + sheet + "--dimensions diameters -o peg.dxf --plot");
   EXPECT_THAT(read("peg.dxf"), HasSubstr("7_DIMENSIONS"));
-  expect_failure("lines peg.obj -o a.svg --dimensions", 2, "--dimensions needs --views");
+  expect_failure("lines peg.obj -o a.svg --dimensions diameters", 2, "--dimensions needs --views");
   // One peg hides another.
   write("core.obj", peg_obj(5, 20));
   write("pegs.json",
         R"({"up": "z", "objects": [{"model": "peg.obj"}, {"model": "core.obj", "translation": [0, 0, 9]}]})");
-  const std::string pegs = "lines pegs.json --views front,top --dimensions -o a.svg";
+  const std::string pegs = "lines pegs.json --views front,top --dimensions diameters -o a.svg";
   EXPECT_THAT(
       succeed(pegs).err,
       HasSubstr("warning: cylinders without a diameter, because none of their lines is drawn: 1; --hidden dashed"));
   EXPECT_EQ(succeed(pegs + " --hidden dashed").err, "");
   write("low.obj", peg_obj(5, 20, 12));
-  EXPECT_THAT(succeed("lines low.obj --up +z --views front,top --dimensions -o a.svg").err,
+  EXPECT_THAT(succeed("lines low.obj --up +z --views front,top --dimensions diameters -o a.svg").err,
               HasSubstr("warning: cylinders of 7 to 17 sides count as prisms and get no diameter: 1\n"));
 }
 

@@ -147,8 +147,8 @@ TEST_F(SectionsCommand, NamesAreWrittenAboveAndLettersAtBothEnds) {
 TEST_F(SectionsCommand, EverySheetKeepsItsViewsApart) {
   const char* const sets[] = {"--sections left", "--sections front,top,left",
                               "--views front,top,left,iso --sections front,left",
-                              "--views front --sections front,front=4,left,left=30 --dimensions",
-                              "--views front,top --sections left=38,top=2 --dimensions --frame"};
+                              "--views front --sections front,front=4,left,left=30 --dimensions diameters",
+                              "--views front,top --sections left=38,top=2 --dimensions diameters --frame"};
   for (const std::string set : sets)
     for (const std::string angle : {" --projection first-angle", " --projection third-angle"}) {
       const json page = drawn("two.obj --up +z --page a2 " + set + angle).page;

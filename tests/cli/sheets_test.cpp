@@ -258,8 +258,9 @@ TEST_F(SheetsCommand, WhatTheFilesNumbersAreIsNotWhatTheSheetStates) {
                         {"inches.json --unit in --dimension-unit mm", "mm", "1016"},
                         {"inches.json --unit mm", "mm", "40", true}};
   for (const Case& c : cases) {
-    const std::string said =
-        succeed(std::string("lines ") + c.options + " --up +z --views front --dimensions --frame -o drawing.json").err;
+    const std::string said = succeed(std::string("lines ") + c.options +
+                                     " --up +z --views front --dimensions diameters --frame -o drawing.json")
+                                 .err;
     const json page = json::parse(read("drawing.json"));
     EXPECT_TRUE(says(page, c.unit, 2.5)) << c.options;
     EXPECT_TRUE(holds_text(points_of(page, "7 dimensions"), c.width, 3.5)) << c.options;

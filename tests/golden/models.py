@@ -43,7 +43,7 @@ KINDS = {
     "all_polygons": ["render", "MODEL", *TINY, "--visible-only", "no", "-o", "figure.svg"],
     "glass": ["render", "MODEL", *TINY, "--opacity", "0.6", "-o", "figure.svg"],
     "drawing": ["lines", "MODEL", "--hidden", "dashed", "-o", "drawing.svg", "-o", "drawing.pdf", "-o", "drawing.dxf", "-o", "drawing.json"],
-    "sheet": ["lines", "MODEL", "--views", "front,top,left,iso", "--frame", "--dimensions", "--page", "a3-landscape", "-o", "sheet.svg"],
+    "sheet": ["lines", "MODEL", "--views", "front,top,left,iso", "--frame", "--dimensions", "diameters", "--page", "a3-landscape", "-o", "sheet.svg"],
     "plot": ["lines", "MODEL", "--view", "iso", "--plot", "--hatch", "3", "--page", "a6", "-o", "plot.svg"],
     "stippled": ["lines", "MODEL", "--style", "figure", "--stipple", "3", "--page", "100,80", "-o", "drawing.svg"],
     "sight": ["sight", "MODEL", "--from", "0,2,0", "--to", "3,1,-5"],

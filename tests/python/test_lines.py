@@ -75,7 +75,7 @@ def test_views_on_paper():
     sheet = surfaces.draw_sheet(fm.frame(surfaces), style="figure", page=(100, 80), hatch=1.0)
     assert sheet.scale is None and sheet.size == (100, 80)
     xml.fromstring(sheet.svg)
-    sheet = surfaces.draw_sheet(["front"], sections=["front"], dimensions=True, page="a3-landscape",
+    sheet = surfaces.draw_sheet(["front"], sections=["front"], dimensions="diameters", page="a3-landscape",
                                 title_block={"title": "Cubes", "author": "A. Appel"})
     assert sheet.size == (420, 297) and "Cubes" in sheet.svg and (sheet.left_out, sheet.undrawn, sheet.prisms) == (0, 0, 0)
 

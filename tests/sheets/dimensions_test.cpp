@@ -214,6 +214,46 @@ TEST_F(DimensionsTest, DiametersOfOneSizeAreOne) {
   EXPECT_EQ(all.layer.groups.at(1).points.size(), expected.points.size());
 }
 
+TEST_F(DimensionsTest, EachLevelHasThoseBeforeIt) {
+  Mesh mesh;
+  add_box(mesh, {100, 60, 10});
+  for (int i = 0; i < 4; ++i) add_peg(mesh, {20 + 20 * i, 30, 10}, 6, 8);
+  add_peg(mesh, {10, 10, 10}, 3, 5);
+  scene_ = scene_of(mesh);
+  draw({NamedView::front, NamedView::top});
+  EXPECT_EQ(dimensioned({.level = Dimensioning::overall}).count, 3u);
+  EXPECT_EQ(dimensioned({.level = Dimensioning::diameters}).count, 5u);
+  const Dimensions all = dimensioned({.level = Dimensioning::holes});
+  EXPECT_EQ(all.count, 5u + 5u + 2u);
+  EXPECT_EQ(all.left_out, 0u);
+  EXPECT_EQ(arrows_of(all), 6u + 2u + 7u + 2u) << "and two origins, which are closed, too";
+  PageGroup expected;
+  for (const char* const number : {"100", "60", "18", "4\u00d7\u230012", "\u23006"}) add_text(expected, number, {0, 0});
+  for (const char* const number : {"10", "20", "40", "60", "80", "10", "30"}) add_text(expected, number, {0, 0});
+  EXPECT_EQ(all.layer.groups.at(1).points.size(), expected.points.size());
+}
+
+TEST_F(DimensionsTest, PositionsWithoutRoomAreCounted) {
+  Mesh mesh;
+  add_box(mesh, {100, 60, 10});
+  for (const float x : {10.f, 14.f, 30.f}) add_peg(mesh, {x, 30, 10}, 1.5f, 8);
+  scene_ = scene_of(mesh);
+  draw({NamedView::front});
+  const Dimensions all = dimensioned({.level = Dimensioning::holes});
+  EXPECT_EQ(all.count, 2u + 1u + 2u + 1u) << "sizes, a diameter, two of three positions along, and one upwards";
+  EXPECT_EQ(all.left_out, 1u);
+}
+
+TEST_F(DimensionsTest, RoundPartsHaveNoPositions) {
+  Mesh mesh;
+  add_peg(mesh, {0, 0, 0}, 20, 10);
+  add_peg(mesh, {0, 0, 10}, 8, 10);
+  add_peg(mesh, {12, 0, 10}, 2, 10);
+  scene_ = scene_of(mesh);
+  draw({NamedView::front, NamedView::top});
+  EXPECT_EQ(dimensioned({.level = Dimensioning::holes}).count, dimensioned().count);
+}
+
 TEST_F(DimensionsTest, BoresHaveDiametersWhateverTheirRims) {
   for (const bool is_rounded : {false, true}) {
     Mesh mesh;
@@ -269,16 +309,18 @@ TEST_F(DimensionsTest, NothingLiesOnANumber) {
   for (int i = 0; i < 12; ++i) add_peg(mesh, {8 + 7.5 * i, 10 + 37 * (i % 2), 10}, 1 + 0.2f * float(i), 8);
   scene_ = scene_of(mesh);
   draw({NamedView::front, NamedView::top});
-  const Dimensions all = dimensioned();
-  EXPECT_GE(all.count, 10u);
-  detail::Obstacles obstacles({{0, 0}, {1000, 1000}});
-  for (const SheetView& sheet : sheets_) obstacles.add(sheet);
-  const PageGroup &drawn = all.layer.groups.at(0), &texts = all.layer.groups.at(1);
-  for (const PagePath& path : drawn.paths)
-    if (!path.is_closed) obstacles.add(detail::PageSegment{drawn.points[path.first], drawn.points[path.first + 1]});
-  for (const PagePath& path : texts.paths)
-    for (std::uint32_t i = path.first; i < path.first + path.count; ++i)
-      EXPECT_TRUE(obstacles.is_free({texts.points[i] - 0.3, texts.points[i] + 0.3})) << i;
+  for (const Dimensioning level : {Dimensioning::diameters, Dimensioning::holes}) {
+    const Dimensions all = dimensioned({.level = level});
+    EXPECT_GE(all.count, level == Dimensioning::holes ? 20u : 10u);
+    detail::Obstacles obstacles({{0, 0}, {1000, 1000}});
+    for (const SheetView& sheet : sheets_) obstacles.add(sheet);
+    const PageGroup &drawn = all.layer.groups.at(0), &texts = all.layer.groups.at(1);
+    for (const PagePath& path : drawn.paths)
+      if (!path.is_closed) obstacles.add(detail::PageSegment{drawn.points[path.first], drawn.points[path.first + 1]});
+    for (const PagePath& path : texts.paths)
+      for (std::uint32_t i = path.first; i < path.first + path.count; ++i)
+        EXPECT_TRUE(obstacles.is_free({texts.points[i] - 0.3, texts.points[i] + 0.3})) << i;
+  }
 }
 
 TEST_F(DimensionsTest, KeepOffWhatIsTaken) {

@@ -104,7 +104,7 @@ TEST_F(SheetOfBlock, UnitsAreOfTheFileOrAsTold) {
 TEST_F(SheetOfBlock, TheTitleBlockSaysWhatTheSheetIs) {
   const Sheet sheet = drawn({.views = {V::front, V::top, V::left, V::iso},
                              .sections = {{V::left, 10.0}},
-                             .dimensions = true,
+                             .dimensions = Dimensioning::diameters,
                              .hidden = HiddenLines::dashed,
                              .page = named_paper("a3"),
                              .title_block = TitleBlock{.title = "Block"}});
@@ -200,7 +200,7 @@ TEST_F(SheetOfBlock, WhatCannotBeMeantIsRefusedByTheNameOfItsField) {
       {{.sections = {{V::left}}, .style = DrawingStyle::figure}, "sections: figures"},
       {{.sections = {{V::left}}, .stipple = 1}, "sections: hatching"},
       {{.sections = {{V::left, 50.0}}}, "sections left=50: the plane misses the model, which lies from x = 0 to 40"},
-      {{.sections = {{V::left}}, .dimensions = true}, "dimensions: "},
+      {{.sections = {{V::left}}, .dimensions = Dimensioning::diameters}, "dimensions: "},
       {{.views = {V::front}, .hidden_views = std::vector{V::front}}, "hidden_views: needs"},
       {{.views = {V::front}, .hidden = HiddenLines::thin, .hidden_views = std::vector{V::top}}, "hidden_views: top"},
       {{.views = {V::front}, .pen = 0}, "pen: must be from 0.01 to 10"},
@@ -244,7 +244,7 @@ TEST_F(SheetOfBlock, AGivenViewHasNothingOfNamedOnes) {
   const std::pair<SheetOptions, const char*> refused[] = {
       {{.views = {V::front}}, "views: "},
       {{.sections = {{V::front}}}, "views: "},
-      {{.dimensions = true}, "dimensions: "},
+      {{.dimensions = Dimensioning::diameters}, "dimensions: "},
       {{.scale = 1}, "scale: a perspective view has no scale"},
       {{.standard_scale = true}, "scale: a perspective view has no scale"},
       {{.centre_lines = true}, "centre_lines: perspective"}};

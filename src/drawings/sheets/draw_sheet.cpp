@@ -212,7 +212,7 @@ std::vector<PlannedView> draw_named_views(const Surfaces& surfaces, const SheetO
 /// Finds the rounds of the views that need them, once for views of the same surfaces.
 void find_rounds_of(std::vector<PlannedView>& views, const SheetOptions& options, const Execution& execution) {
   // Dimensions need rounds, too.
-  if (!options.dimensions && !wants_centre_lines(options)) return;
+  if (options.dimensions == Dimensioning::none && !wants_centre_lines(options)) return;
   for (std::size_t i = 0; i < views.size(); ++i) {
     // A named view at an angle shows no round along its axis.
     if (views[i].direction && is_at_an_angle(*views[i].direction)) continue;
@@ -321,9 +321,11 @@ SheetPlan place_views(std::vector<PlannedView>& views, const Surfaces& surfaces,
   place_sections(cells, views);
   keep_section_room(cells, views);
   std::vector<OverallSizes> sizes(views.size());
-  if (options.dimensions) sizes = overall_sizes_of(dimensioned_views(views));
+  const std::vector<DimensionedView> dimensioned = dimensioned_views(views);
+  if (options.dimensions != Dimensioning::none) sizes = overall_sizes_of(dimensioned);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const glm::dvec2 room = room_for(sizes[i], DimensionOptions().text_height);
+    const bool has_positions = options.dimensions >= Dimensioning::holes && shows_holes(dimensioned[i]);
+    const glm::dvec2 room = room_for(sizes[i], has_positions, DimensionOptions().text_height);
     if (room.x > 0) cells[i].room_before.x = std::max(cells[i].room_before.x, views[i].taken.x + room.x);
     if (room.y > 0) cells[i].room_behind.y = std::max(cells[i].room_behind.y, views[i].taken.y + room.y);
   }
@@ -345,6 +347,7 @@ void add_dimensions(Sheet& sheet, const std::vector<PlannedView>& views, const s
   const bool in_inches = is_in_inches(options, scene);
   numbers.numbers_per_unit = millimetres_per_unit(options, scene) / (in_inches ? inch : 1);
   numbers.decimals = in_inches ? 3 : 2;
+  numbers.level = options.dimensions;
   const glm::dvec2 size(sheet.page.width, sheet.page.height);
   PageBox area{glm::dvec2(page_rim), size - page_rim};
   std::vector<PageBox> taken = marks;
@@ -397,7 +400,7 @@ Sheet finish(std::vector<PlannedView> views, const Surfaces& surfaces, const She
   if (views[0].drawing.view.projection.orthographic) sheet.scale = plan.scale;
   SectionMarks marks = section_marks_of(views, pens.centre);
   if (!marks.layer.groups.empty()) sheet.page.layers.push_back(std::move(marks.layer));
-  if (options.dimensions) add_dimensions(sheet, views, marks.boxes, surfaces.scene(), options);
+  if (options.dimensions != Dimensioning::none) add_dimensions(sheet, views, marks.boxes, surfaces.scene(), options);
   if (options.title_block) add_frame(sheet.page, options, surfaces.scene(), sheet.scale);
   for (PlannedView& view : views) sheet.views.push_back(std::move(view));
   return sheet;
@@ -423,7 +426,7 @@ void validate(const SheetOptions& o) {
   check_range("tessellation_error", o.tessellation_error, 1e-3, 1e3);
   check_named_views(o);
   check_paper(o);
-  if (o.dimensions && o.views.empty()) refuse_option("dimensions", "need views");
+  if (o.dimensions != Dimensioning::none && o.views.empty()) refuse_option("dimensions", "need views");
   check_section_views(o);
 }
 

@@ -8,6 +8,12 @@
 //     (  o  )
 //
 // A leader costs its length, and more for every line that it crosses. The cheapest free place is taken.
+//
+// Positions are running dimensions between the view and its overall size:
+//
+//        |    |         |       extension lines from the circles
+//     o->|--->|-------->|       the lower left corner of the view is the origin
+//        20   45        90
 #include "sheets/dimensions/dimensions.h"
 
 #include <algorithm>
@@ -39,6 +45,16 @@ struct Extent {
   const Round* diameter = nullptr;  ///< set if both ends belong to one cylinder
 };
 
+bool is_seen_along(const Round& round, const View& camera) {
+  return glm::length(glm::cross(round.axis, camera.forward())) <= square;
+}
+
+/// Whether enough of the round is drawn, by its drawn length in pixels.
+bool is_drawn(const Round& round, double length, const View& camera) {
+  const Projection& p = camera.projection;
+  return length >= least_drawn * round.turn * round.radius * camera.width / (p.right - p.left);
+}
+
 struct MeasuredView {
   PageBox box;                        ///< the box of all drawn lines
   std::vector<SeenCircle> circles;    ///< seen along their axes, and drawn to at least a fifth
@@ -54,15 +70,14 @@ struct MeasuredView {
     box = {view.sheet->on_page(drawn.low), view.sheet->on_page(drawn.high)};
     if (view.rounds == nullptr) return;
     for (const Round& prism : view.rounds->prisms)
-      if (is_seen_along(prism)) prisms.push_back(&prism);
+      if (is_seen_along(prism, camera)) prisms.push_back(&prism);
     const std::vector<double> lengths = drawn_lengths(*view.rounds, *view.drawing, view.with_hidden);
     for (std::size_t i = 0; i < lengths.size(); ++i) {
       const Round& round = view.rounds->rounds[i];
       if (round.kind == RoundKind::revolved) continue;  // its largest circle is no edge
-      if (!is_seen_along(round)) continue;
-      const double radius = round.radius * millimetres_;
-      if (lengths[i] * view.sheet->millimetres_per_pixel >= least_drawn * round.turn * radius)
-        circles.push_back({&round, on_page(round.from), radius});
+      if (!is_seen_along(round, camera)) continue;
+      if (is_drawn(round, lengths[i], camera))
+        circles.push_back({&round, on_page(round.from), round.radius * millimetres_});
       else if (round.kind == RoundKind::cylinder)
         undrawn.push_back(&round);
     }
@@ -119,17 +134,16 @@ struct MeasuredView {
     return foot;
   }
 
+  /// Length in units of the scene.
+  [[nodiscard]] double size_of(double on_paper) const { return on_paper / millimetres_; }
+
   [[nodiscard]] glm::dvec2 on_page(const glm::dvec3& point) const {
     return view_.sheet->on_page(on_screen(view_.drawing->view, point));
   }
 
  private:
-  [[nodiscard]] bool is_seen_along(const Round& round) const {
-    return glm::length(glm::cross(round.axis, view_.drawing->view.forward())) <= square;
-  }
-
   const DimensionedView& view_;
-  double millimetres_;  ///< millimetres of paper per unit of the scene
+  double millimetres_ = 1;  ///< millimetres of paper per unit of the scene
 };
 
 constexpr double extension_gap = 1;        // millimetres between the measured feature and its extension line
@@ -147,6 +161,18 @@ class DimensionPen {
     const glm::dvec2 ends[] = {from, to};
     lines_.add(ends, false);
     obstacles_.add(PageSegment{from, to});
+  }
+
+  /// The small circle at the origin of running dimensions.
+  void origin(const glm::dvec2& at) {
+    constexpr int corners = 16;
+    constexpr double radius = 1;
+    std::vector<glm::dvec2> circle;
+    for (int i = 0; i < corners; ++i) {
+      const double angle = 2 * std::numbers::pi * i / corners;
+      circle.push_back(at + radius * glm::dvec2(std::cos(angle), std::sin(angle)));
+    }
+    lines_.add(circle, true);
   }
 
   void arrow(const glm::dvec2& tip, const glm::dvec2& pointing) {
@@ -235,10 +261,14 @@ struct Diameters {
     return is_new;
   }
 
-  /// Adds the diameters that this view shows and no earlier view has shown.
-  void add(const MeasuredView& view, Dimensions& all) {
-    all.left_out += view.circles.size() - std::min(view.circles.size(), most_circles);
-    for (const Group& group : groups_of(view)) {
+  struct Group {
+    std::string text;
+    std::vector<SeenCircle> circles;  ///< at different places
+  };
+
+  /// Writes the diameters of a view.
+  void add(const std::vector<Group>& groups, Dimensions& all) {
+    for (const Group& group : groups) {
       const std::size_t count = group.circles.size();
       const std::string text = count > 1 ? std::to_string(count) + "\u00d7" + group.text : group.text;
       std::optional<Leader> leader;
@@ -268,10 +298,6 @@ struct Diameters {
     count(view.prisms, all.prisms);
   }
 
-  struct Group {
-    std::string text;
-    std::vector<SeenCircle> circles;  ///< at different places
-  };
   /// A leader from a circle to the shelf under its number.
   struct Leader {
     glm::dvec2 tip, knee, end;
@@ -279,7 +305,9 @@ struct Diameters {
     double cost;
   };
 
-  [[nodiscard]] std::vector<Group> groups_of(const MeasuredView& view) {
+  /// The circles that this view shows and no earlier view has shown, by their diameters.
+  [[nodiscard]] std::vector<Group> groups_of(const MeasuredView& view, Dimensions& all) {
+    all.left_out += view.circles.size() - std::min(view.circles.size(), most_circles);
     std::vector<SeenCircle> circles = view.circles;
     circles.resize(std::min(circles.size(), most_circles));
     std::vector<Group> groups;
@@ -371,6 +399,56 @@ void draw_overall_size(DimensionPen& pen, const MeasuredView& view, const glm::d
   pen.text(text, at(middle, line), TextAlign::centre, !is_level);
 }
 
+constexpr double positions_room = first_distance + extension_overshoot + 14;  // numbers of five digits
+
+/// Draws the positions of circles along an axis, as running dimensions. `taken` as for draw_overall_size().
+void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec2& taken, int axis, const Extent& e,
+                    const std::vector<Diameters::Group>& groups, const DimensionOptions& options, Dimensions& all) {
+  const bool is_level = axis == 0;
+  const double row = is_level ? view.box.high.y + first_distance + taken.y : view.box.low.x - first_distance - taken.x;
+  const double away = is_level ? 1 : -1, datum = is_level ? e.low : e.high, forwards = is_level ? 1 : -1;
+  const auto at = [&](double along, double across) {
+    return is_level ? glm::dvec2(along, across) : glm::dvec2(across, along);
+  };
+  struct Position {
+    double distance, foot;  ///< from the datum, and where the extension line begins; millimetres on the page
+  };
+  std::vector<Position> positions;
+  for (const Diameters::Group& group : groups)
+    for (const SeenCircle& circle : group.circles)
+      positions.push_back(
+          {(circle.centre[axis] - datum) * forwards, circle.centre[1 - axis] + away * (circle.radius + extension_gap)});
+  std::erase_if(positions, [](const Position& p) { return p.distance < same_place; });
+  // Of circles at one distance, the one nearest to the row comes first.
+  std::sort(positions.begin(), positions.end(), [&](const Position& a, const Position& b) {
+    const bool is_same = std::abs(a.distance - b.distance) < same_place;
+    return is_same ? away * a.foot > away * b.foot : a.distance < b.distance;
+  });
+  if (positions.empty()) return;
+  const double thickness = options.text_height + text_distance;
+  double last = -thickness, farthest = 0;
+  for (const Position& p : positions) {
+    if (p.distance < farthest + same_place) continue;
+    if (p.distance < last + thickness) {
+      ++all.left_out;
+      continue;
+    }
+    farthest = last = p.distance;
+    const double along = datum + forwards * p.distance;
+    pen.line(at(along, p.foot), at(along, row + away * extension_overshoot));
+    pen.arrow(at(along, row), at(forwards, 0));
+    // The number stands in line with its extension line.
+    const glm::dvec2 base = at(along + options.text_height / 2 + text_distance, row + away * (extension_overshoot + 1));
+    pen.text(dimension_text(view.size_of(p.distance) * options.numbers_per_unit, options.decimals), base,
+             TextAlign::right, is_level);
+    ++all.count;
+  }
+  pen.line(at(datum, view.foot_of_end(axis, datum) + away * extension_gap),
+           at(datum, row + away * extension_overshoot));
+  pen.line(at(datum, row), at(datum + forwards * farthest, row));
+  pen.origin(at(datum, row));
+}
+
 void validate(const DimensionOptions& options) {
   if (!(options.numbers_per_unit > 0 && std::isfinite(options.numbers_per_unit)))
     throw Error(ErrorCode::bad_argument, "numbers_per_unit", "must be above 0 and finite");
@@ -416,9 +494,23 @@ std::vector<OverallSizes> overall_sizes_of(std::span<const DimensionedView> view
   return all;
 }
 
-glm::dvec2 room_for(const OverallSizes& sizes, double text_height) {
-  return {sizes.height ? first_distance + text_height + 2 * text_distance : 0,
-          sizes.width ? first_distance + extension_overshoot + text_distance : 0};
+bool shows_holes(const DimensionedView& view) {
+  if (!view.is_dimensioned || view.rounds == nullptr) return false;
+  const View& camera = view.drawing->view;
+  const std::vector<double> lengths = drawn_lengths(*view.rounds, *view.drawing, view.with_hidden);
+  for (std::size_t i = 0; i < lengths.size(); ++i) {
+    const Round& round = view.rounds->rounds[i];
+    if (round.kind != RoundKind::revolved && round.turn >= least_turn && is_seen_along(round, camera) &&
+        is_drawn(round, lengths[i], camera))
+      return true;
+  }
+  return false;
+}
+
+glm::dvec2 room_for(const OverallSizes& sizes, bool has_positions, double text_height) {
+  const double more = has_positions ? positions_room : 0;
+  return {more + (sizes.height ? first_distance + text_height + 2 * text_distance : 0),
+          more + (sizes.width ? first_distance + extension_overshoot + text_distance : 0)};
 }
 
 Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBox& area, std::span<const PageBox> taken,
@@ -435,7 +527,9 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
   Dimensions all;
   DimensionPen pen(options, obstacles);
   Diameters diameters{options, pen, obstacles};
+  std::vector<bool> has_positions(views.size());
   for (std::size_t i = 0; i < views.size(); ++i) {
+    has_positions[i] = options.level >= Dimensioning::holes && shows_holes(views[i]);
     if (measured[i].box.is_empty()) continue;
     for (const int axis : {0, 1}) {
       if (!(axis == 0 ? shares[i].width : shares[i].height)) continue;
@@ -446,14 +540,24 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
         if (!diameters.take(*extent.diameter)) continue;
         text = diameter_sign + text;
       }
-      draw_overall_size(pen, measured[i], views[i].taken, axis, extent, text);
+      const glm::dvec2 within = views[i].taken + glm::dvec2(has_positions[i] ? positions_room : 0);
+      draw_overall_size(pen, measured[i], within, axis, extent, text);
       ++all.count;
     }
   }
-  for (std::size_t i = 0; i < views.size(); ++i)
-    if (views[i].is_dimensioned) diameters.add(measured[i], all);
-  for (std::size_t i = 0; i < views.size(); ++i)
-    if (views[i].is_dimensioned) diameters.count_missing(measured[i], all);
+  if (options.level >= Dimensioning::diameters) {
+    std::vector<std::vector<Diameters::Group>> groups(views.size());
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (!views[i].is_dimensioned) continue;
+      groups[i] = diameters.groups_of(measured[i], all);
+      for (const int axis : {0, 1})
+        if (const Extent extent = measured[i].extent(axis); has_positions[i] && extent.diameter == nullptr)
+          draw_positions(pen, measured[i], views[i].taken, axis, extent, groups[i], options, all);
+    }
+    for (const std::vector<Diameters::Group>& of_view : groups) diameters.add(of_view, all);
+    for (std::size_t i = 0; i < views.size(); ++i)
+      if (views[i].is_dimensioned) diameters.count_missing(measured[i], all);
+  }
   all.layer.groups = pen.take();
   return all;
 }

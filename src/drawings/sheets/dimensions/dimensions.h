@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dimensions of drawing sheets by ISO 129: diameters, and overall sizes of the drawn lines, not of the model's box.
+// Dimensions of drawing sheets by ISO 129: diameters and positions of circles, and overall sizes of the drawn lines,
+// not of the model's box.
 #pragma once
 
 #include <span>
@@ -22,6 +23,7 @@ struct DimensionedView {
 };
 
 struct DimensionOptions {
+  Dimensioning level = Dimensioning::diameters;
   double numbers_per_unit = 1;  ///< numbers per unit of length of the scene; above 0
   int decimals = 2;             ///< the most decimals, 0 to 6; small numbers have three significant digits
   double text_height = 3.5;     ///< millimetres, as in TextStyle
@@ -36,8 +38,10 @@ struct OverallSizes {
 /// Decides which overall sizes each view has. Each direction of space has one size, in the first view that shows the
 /// direction in true length, level or upright. Views that are not dimensioned have no sizes.
 [[nodiscard]] std::vector<OverallSizes> overall_sizes_of(std::span<const DimensionedView> views);
-/// Millimetres that these sizes occupy on the left of the view and below it, in addition to other marks.
-[[nodiscard]] glm::dvec2 room_for(const OverallSizes& sizes, double text_height);
+/// Whether a view has circles whose positions it may state.
+[[nodiscard]] bool shows_holes(const DimensionedView& view);
+/// Millimetres that sizes and positions occupy on the left of the view and below it, in addition to other marks.
+[[nodiscard]] glm::dvec2 room_for(const OverallSizes& sizes, bool has_positions, double text_height);
 
 /// The text of a number, without trailing zeros, with at most `decimals` decimals or three significant digits,
 /// whichever is more. If a half would have to be rounded, the text has one more digit: "50", "12.7", "1.875".
@@ -46,7 +50,7 @@ struct OverallSizes {
 struct Dimensions {
   PageLayer layer{"7 dimensions"};  ///< one group of lines and one of texts, both without names
   std::size_t count = 0;            ///< number of dimensions on the page
-  std::size_t left_out = 0;         ///< diameters without room
+  std::size_t left_out = 0;         ///< diameters and positions without room
   std::size_t undrawn = 0;          ///< diameters of cylinders that are seen along their axes, but not drawn
   std::size_t prisms = 0;           ///< diameters of cylinders of fewer than 18 sides, which count as polygons
 };
@@ -54,9 +58,10 @@ struct Dimensions {
 /// Places overall sizes by overall_sizes_of(), and the diameters of circles and cylinders seen along their axes, each
 /// once on the sheet, those of one size in a view together ("6x⌀10"). An overall size of a single cylinder is its
 /// diameter, which the corners of its polygon do not reach. Circles at the end of a cone or chamfer, and arcs of little
-/// more than a half circle or less, have none. At most 64 diameters stand on leader lines. They avoid lines and texts
-/// of the drawing and `taken`, and stay within `area` (the page within its frame). O(lines + rounds). \throws Error
-/// bad_argument for options out of range.
+/// more than a half circle or less, have none. Circles with a diameter have positions, too: running dimensions from the
+/// lower left corner of their view, one for each distance, unless a round part bounds the view there. At most 64
+/// diameters stand on leader lines. They avoid lines and texts of the drawing and `taken`, and stay within `area` (the
+/// page within its frame). O(lines + rounds). \throws Error bad_argument for options out of range.
 [[nodiscard]] Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBox& area,
                                           std::span<const PageBox> taken, const DimensionOptions& options = {});
 
