@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Debian packages by CPack: frontmost (the program), libfrontmost-dev (library, headers, descriptions) and, if their
-# modules are built, python3-frontmost, frontmost-mpi and
-# frontmost-gl.
+# modules are built, python3-frontmost, frontmost-mpi, frontmost-gl and frontmost-import.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME frontmost)
 set(CPACK_PACKAGE_CONTACT "Frontmost maintainers <maintainers@frontmost.example>")
@@ -19,7 +18,9 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
 "Pictures, depth and id maps of 3D models from the command line, without a
 GPU or a display, the same pixels on every machine. Reads STL, PLY, OBJ, OFF,
-glTF and 3MF; writes PNG, OpenEXR, PFM and NPY.")
+glTF and 3MF; writes PNG, OpenEXR, PFM and NPY. With frontmost-import it also
+reads STEP, IGES, BREP, FBX, COLLADA and more.")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "frontmost-import, frontmost-gl")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libfrontmost-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
@@ -70,6 +71,16 @@ if(TARGET frontmost_gl)
 "OpenGL 1.x, OSMesa and GLUT for programs that run without a display or a GPU.
 Finished programs run unchanged by frontmost gl, and draw the same pixels on
 every machine.")
+endif()
+
+if(TARGET frontmost-import)
+  list(APPEND CPACK_COMPONENTS_ALL import)
+  set(CPACK_DEBIAN_IMPORT_PACKAGE_NAME frontmost-import)
+  set(CPACK_DEBIAN_IMPORT_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_COMPONENT_IMPORT_DESCRIPTION
+"Lets frontmost read CAD files, STEP, IGES and BREP with their edges, and meshes
+in formats such as FBX, COLLADA and 3DS. It runs as a process of its own, because
+the libraries that read these formats crash on broken files.")
 endif()
 
 include(CPack)

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# The three drawings of docs/drawings.md: a technical sheet, a plotter drawing and a figure for a paper.
+# The drawings of docs/drawings.md: a technical sheet, a plotter drawing, a figure for a paper and, where frontmost-import is
+# installed, the sheet of a CAD file.
 #
 #     PATH=$PATH:build/release examples/drawings.sh [FOLDER]
 set -eu
@@ -11,3 +12,7 @@ frontmost lines bracket.obj --up +z --views front,top,left,iso --hidden dashed -
   --title 'Angle bracket' --number FM-0014 --author 'E. Example' --date 2026-03-01 -o sheet.svg -o sheet.dxf
 frontmost lines bracket.obj --up +z --view iso --camera-orthographic --plot --hidden dashed --hatch 1.5 --page 160,130 --margin 5 -o plot.svg -o plot.pdf
 frontmost lines builtin:gallery --style figure --hatch 1.2 --page 160,100 --margin 3 -o figure.svg -o figure.pdf
+if [ -x "$(dirname "$(command -v frontmost)")/frontmost-import" ]; then
+  frontmost lines "$here/cad/fixture.step" --views front,top,iso --dimensions holes --page a4-landscape \
+    --title 'Drilling fixture' --number FM-0015 --author 'E. Example' --date 2026-03-01 -o fixture.svg -o fixture.pdf
+fi

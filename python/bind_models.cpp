@@ -17,7 +17,11 @@ FRONTMOST_WORDS(frontmost::ModelFormat, "format",
                  {frontmost::ModelFormat::off, "off"},
                  {frontmost::ModelFormat::gltf, "gltf"},
                  {frontmost::ModelFormat::threemf, "3mf"},
-                 {frontmost::ModelFormat::scene, "scene"}});
+                 {frontmost::ModelFormat::scene, "scene"},
+                 {frontmost::ModelFormat::step, "step"},
+                 {frontmost::ModelFormat::iges, "iges"},
+                 {frontmost::ModelFormat::brep, "brep"},
+                 {frontmost::ModelFormat::foreign, "foreign"}});
 
 namespace frontmost::python {
 namespace {
@@ -30,8 +34,12 @@ std::string path_text(const py::object& path) {
 
 HeldScene load_scene(const py::object& source, const std::string& name, const std::optional<Axis>& up,
                      const std::optional<ModelFormat>& format, const std::vector<py::object>& allow_outside,
-                     int threads, const py::object& progress) {
+                     double mesh_tolerance, double mesh_angle, double import_seconds, int threads,
+                     const py::object& progress) {
   LoadOptions options;
+  options.import.tolerance = mesh_tolerance;
+  options.import.angle = glm::radians(mesh_angle);
+  options.import.seconds = import_seconds;
   for (const py::object& folder : allow_outside) options.allow_outside.push_back(path_text(folder));
   options.up = up;
   options.format = format;
@@ -80,8 +88,8 @@ void bind_models(py::module_& m) {
   py::class_<HeldScene>(m.attr("Scene"))
       .def("save", &save_scene, "path"_a, py::kw_only(), "of_triangles"_a = py::dict(), doc("Scene.save"));
   m.def("load", &load_scene, "source"_a, py::kw_only(), "name"_a = "memory", "up"_a = py::none(),
-        "format"_a = py::none(), "allow_outside"_a = std::vector<py::object>(), "threads"_a = 0,
-        "progress"_a = py::none(), doc("load"));
+        "format"_a = py::none(), "allow_outside"_a = std::vector<py::object>(), "mesh_tolerance"_a = 0.0,
+        "mesh_angle"_a = 12.0, "import_seconds"_a = 600.0, "threads"_a = 0, "progress"_a = py::none(), doc("load"));
   m.def(
       "builtin", [](const std::string& name) { return HeldScene(builtin(name)); }, "name"_a, doc("builtin"));
   m.def(

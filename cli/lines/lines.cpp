@@ -139,9 +139,11 @@ void warn_of(const Sheet& sheet, const Surfaces& surfaces, const Settings& setti
   if (const auto hint = unit_hint(settings.drawing, surfaces, sheet.scale.value_or(0))) warn({*hint});
   warn(open_outlines(sheet));
   if (sheet.left_out > 0)
-    warn({fmt::format(
-        "{} diameters are left out for lack of room (a sheet has 64 at most); use a larger --page or fewer views",
-        sheet.left_out)});
+    warn(
+        {fmt::format("{} diameters and positions are left out for lack of room (a sheet has 64 diameters at most); use "
+                     "a larger --page "
+                     "or fewer views",
+                     sheet.left_out)});
   if (sheet.undrawn > 0)
     warn(
         {fmt::format("cylinders without a diameter, because none of their lines is drawn: {}{}", sheet.undrawn,
@@ -207,6 +209,11 @@ std::vector<Settings> sheets_of(const Settings& given) {
       paths.push_back(path = fill_template(path, model_name(model), view));
     for (std::string& path : sheet.drawing.books) path = fill_template(path, {}, view);
   }
+  // At a scale that is known, triangles of CAD files leave their surface by no more than a thin pen shows.
+  constexpr double millimetres_on_paper = 0.02;
+  for (Settings& sheet : sheets)
+    if (const auto scale = sheet.drawing.sheet.scale; scale && sheet.load.import.tolerance == 0)
+      sheet.load.import.tolerance = std::max(0.001, millimetres_on_paper / *scale);
   const std::vector<std::string>& books = sheets.front().drawing.books;
   paths.insert(paths.end(), books.begin(), books.end());
   check_outputs(paths, input_files(given));

@@ -42,7 +42,7 @@ glm::ivec2 resolution_from(std::string_view text) {
 constexpr Option view_options[] = {
     {"up", 0, "AXIS", "The model's up axis: +x, +y, +z, -x, -y or -z; by default that of the file format.",
      Group::model, for_every_model, [](Settings& s, const Given& g) { s.load.up = axis_of(parse_direction(g.text)); }},
-    {"input-format", 0, "stl|ply|obj|off|gltf|3mf|scene",
+    {"input-format", 0, "stl|ply|obj|off|gltf|3mf|scene|step|iges|brep|foreign",
      "Format of the model; by default found from the file name, or from the first bytes.", Group::model,
      for_every_model, [](Settings& s, const Given& g) { s.load.format = g.choice<ModelFormat>(); }},
     {"allow-outside", 0, "FOLDER",
@@ -50,6 +50,31 @@ constexpr Option view_options[] = {
      "times.",
      Group::model, for_every_model | may_repeat,
      [](Settings& s, const Given& g) { s.load.allow_outside.push_back(g.file_name()); }},
+
+    {"mesh-tolerance", 0, "MM",
+     "STEP, IGES, BREP: greatest distance of triangles from the surface, in millimetres; by default 0.05 % of the "
+     "model's diagonal, or 0.02 mm on the paper of lines --scale A:B.",
+     Group::model, for_every_model,
+     [](Settings& s, const Given& g) {
+       s.load.import.tolerance = g.number({1e-6, 1e6});
+     }},
+    {"mesh-angle", 0, "DEGREES",
+     "STEP, IGES, BREP: greatest angle between the normals of neighbouring triangles, 0.1 to 90; 12 by default.",
+     Group::model, for_every_model,
+     [](Settings& s, const Given& g) {
+       s.load.import.angle = glm::radians(g.number({0.1, 90}));
+     }},
+    {"import-seconds", 0, "SECONDS",
+     "STEP and other formats that frontmost-import reads: greatest time for reading; 600 by default.", Group::model,
+     for_every_model,
+     [](Settings& s, const Given& g) {
+       s.load.import.seconds = g.number({0.1, 1e6});
+     }},
+    {"import-gigabytes", 0, "N", "The same formats: greatest memory for reading; 8 by default.", Group::model,
+     for_every_model,
+     [](Settings& s, const Given& g) {
+       s.load.import.bytes = std::uint64_t(g.number({0.1, 4096}) * 0x1p30);
+     }},
 
     {"view", 0, "front|back|left|right|top|bottom|iso",
      "Look at the model from this side, far enough away to see all that --frame selects.", Group::camera, for_views,

@@ -33,12 +33,24 @@ class ImageDecoder {
   [[nodiscard]] virtual Texture pixels(std::span<const std::byte> file) const = 0;
 };
 
+/// How models are read whose formats take the program frontmost-import: STEP, IGES, BREP and foreign meshes. It runs as
+/// a process of its own, which ends with load(), also when load() is cancelled.
+struct ImportOptions {
+  /// Curved surfaces: greatest distance of the triangles from the surface, in millimetres; 0: 0.05 % of the diagonal.
+  double tolerance = 0;
+  double angle = 0.20943951023931953;  ///< radians between the normals of neighbouring triangles, above 0; 12 degrees
+  double seconds = 600;                ///< greatest time, above 0
+  std::uint64_t bytes = std::uint64_t(8) << 30;  ///< greatest size of the process's memory
+};
+
 struct LoadOptions {
-  std::optional<ModelFormat> format;            ///< none: found by suffix, or by content if the suffix names no format
-  std::optional<Axis> up;                       ///< none: by scene file, or by format: z for STL and 3MF, y for others
+  std::optional<ModelFormat> format;  ///< none: found by suffix, or by content if the suffix names no format
+  /// None: by the scene file or foreign file, or by format: z for STL, 3MF, STEP, IGES and BREP, y for others.
+  std::optional<Axis> up;
   const ImageDecoder* image_decoder = nullptr;  ///< borrowed during load(); null: PNG, JPEG, WebP only
   /// Further folders in or below which a scene file may name models and poses. Its own folder needs no entry.
   std::vector<std::string> allow_outside{};
+  ImportOptions import{};
 };
 
 /// Reads a model from a file; "-" is standard input, "builtin:NAME" a built-in scene. Keeps the file's triangle count
@@ -47,6 +59,7 @@ struct LoadOptions {
 /// size gets a Scene::origin (see fitting_origin()), which is subtracted in doubles: point p of the scene is origin + p
 /// in the file. Callers subtract the origin from eyes, rays and points that are in the file's coordinates.
 /// Scene::source holds the format, the unit and the files read. Memory while reading: about twice the result at most.
+/// frontmost-import is the program that FRONTMOST_IMPORT names, or the one beside this program, or the installed one.
 /// \throws Error file_unreadable, file_malformed, unsupported or limit_exceeded: "name: place: reason".
 [[nodiscard]] Scene load(const std::string& path, const LoadOptions& options = {}, const Execution& execution = {});
 

@@ -42,6 +42,13 @@ struct BezierPatch {
   glm::dvec2 texture_low{0}, texture_size{1};
 };
 
+/// A circle, or an arc of it, that some edges of a mesh follow exactly.
+struct EdgeCircle {
+  glm::dvec3 centre{0}, axis{0, 0, 1};  ///< the axis has unit length
+  double radius = 1;
+  std::uint32_t first = 0, count = 0;  ///< range of Mesh::sharp_edges
+};
+
 /// The most sets of texture coordinates that a mesh may have.
 inline constexpr std::uint32_t max_texcoord_sets = 4;
 
@@ -67,6 +74,11 @@ struct Mesh {
   /// For each triangle, the polygon of the file that it came from, counted from 0 in the mesh. Empty: every polygon was
   /// one triangle, so both have the same number.
   std::vector<std::uint32_t> face_ids;
+  /// Edges that the file states, as those of a CAD system: pairs of indices into positions, each a side of triangles.
+  /// Smooth edges are seams where a surface goes on. draw_lines() draws sharp edges as creases. If a smooth edge is a
+  /// side of its triangles, a mesh has no other creases; else it has those that angles show, too.
+  std::vector<glm::uvec2> sharp_edges, smooth_edges;
+  std::vector<EdgeCircle> edge_circles;  ///< with ranges that ascend and do not overlap
   std::vector<Sphere> spheres;
   std::vector<BezierPatch> patches;
 
@@ -232,14 +244,15 @@ struct Light {
 enum class Axis : std::uint8_t { x, y, z, minus_x, minus_y, minus_z };
 [[nodiscard]] glm::dvec3 direction(Axis axis);
 
-/// Formats of model files. `scene` is a scene file, which places models of the other formats.
-enum class ModelFormat : std::uint8_t { stl, ply, obj, off, gltf, threemf, scene };
+/// Formats of model files. `scene` is a scene file, which places models of the other formats. The program
+/// frontmost-import reads step, iges, brep, and `foreign`: meshes of any other format that it knows.
+enum class ModelFormat : std::uint8_t { stl, ply, obj, off, gltf, threemf, scene, step, iges, brep, foreign };
 
 /// Facts about the files that a scene was read from. Scenes made by code have none.
 struct SceneSource {
   std::optional<ModelFormat> format;  ///< format of the first model
   /// Length in metres of one unit of the coordinates, if the first model's file states it: 1 for glTF, the named unit
-  /// for 3MF. No coordinate is scaled by this length.
+  /// for 3MF, STEP, IGES and FBX. No coordinate is scaled by this length.
   std::optional<double> metres_per_unit;
   /// Every file that was opened: the model, and the material libraries, buffers and textures that it names. Each is
   /// listed once per model, by its path without links, sorted by name.

@@ -12,7 +12,7 @@ __version__: str
 Progress = Union[None, bool, Callable[[str, float], Any]]
 Path = Union[str, os.PathLike[str]]
 Up = Literal["x", "y", "z", "-x", "-y", "-z"]
-Format = Literal["stl", "ply", "obj", "off", "gltf", "3mf", "scene"]
+Format = Literal["stl", "ply", "obj", "off", "gltf", "3mf", "scene", "step", "iges", "brep", "foreign"]
 Convention = Literal["opencv", "opengl", "opencv_world_to_camera", "opencv_camera_to_world", "opengl_camera_to_world",
                      "opengl_world_to_camera", "robot", "robot_camera_to_world", "robot_world_to_camera"]
 PixelRule = Literal["centre_at_integer", "centre_at_half"]
@@ -195,11 +195,15 @@ class Scene:
         """
 
 def load(source: Path | bytes, *, name: str = "memory", up: Up | None = None, format: Format | None = None,
-         allow_outside: Sequence[Path] = [], threads: int = 0, progress: Progress = None) -> Scene:
-    """Reads a model: STL, PLY, OBJ, OFF, glTF, GLB, 3MF or a scene file; "builtin:NAME"; or the bytes of a file.
+         allow_outside: Sequence[Path] = [], mesh_tolerance: float = 0, mesh_angle: float = 12,
+         import_seconds: float = 600, threads: int = 0, progress: Progress = None) -> Scene:
+    """Reads a model: STL, PLY, OBJ, OFF, glTF, GLB, 3MF or a scene file; where frontmost-import is installed, STEP, IGES,
+    BREP and other formats; "builtin:NAME"; or the bytes of a file.
 
     name: what messages call bytes. up, format: None takes the file's. allow_outside: folders in which, or below which,
-    a scene file may name models, besides its own. Raises Error with the file, the place and the reason: file_unreadable, file_malformed, unsupported, limit_exceeded.
+    a scene file may name models, besides its own. mesh_tolerance: greatest distance of triangles from the surfaces of
+    STEP, IGES and BREP, in millimetres; 0: 0.05 % of the diagonal. mesh_angle: greatest angle between the normals of
+    neighbours, in degrees. import_seconds: greatest time of frontmost-import. Raises Error with the file, the place and the reason: file_unreadable, file_malformed, unsupported, limit_exceeded.
     """
 
 def builtin(name: str) -> Scene:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The files that the documentation's examples name, as small as possible: a block of 2 x 1 x 1 units."""
 import json
+import pathlib
+import shutil
 import struct
 
 CORNERS = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 2)]
@@ -59,7 +61,11 @@ def glb(lamp=False):
     return b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks
 
 
+EXAMPLES = pathlib.Path(__file__).resolve().parent.parent.parent / "examples"
+
+
 def write(folder):
+    shutil.copy(EXAMPLES / "cad" / "fixture.step", folder)
     (folder / "part.stl").write_bytes(stl())
     (folder / "object.ply").write_bytes(ply())
     (folder / "engine.glb").write_bytes(glb())

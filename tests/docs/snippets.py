@@ -89,6 +89,10 @@ def run(program, frontmost, window):
             of_opengl = [block for block in commands if "frontmost gl " in block[2]]
             commands = [block for block in commands if block not in of_opengl]
             print(f"{len(of_opengl)} shell blocks are skipped, because libfrontmost-gl is not built")
+        if not (frontmost.resolve().parent / "frontmost-import").exists():
+            of_cad = [block for block in commands if ".step" in block[2]]
+            commands = [block for block in commands if block not in of_cad]
+            print(f"{len(of_cad)} shell blocks are skipped, because frontmost-import is not built")
         good = all([run_shell(*block, folder, environment) for block in commands]) and good
     print(f"{len(list(blocks('cpp')))} C++ blocks, {len(commands)} shell blocks")
     sys.exit(not good)

@@ -15,9 +15,10 @@ from consumer import compare, listing, run
 HERE = pathlib.Path(__file__).resolve().parent
 NEEDED = {"frontmost": ["libc6", "libstdc++6"], "libfrontmost-dev": ["libglm-dev", "libhwy-dev", "libpng-dev"],
           "python3-frontmost": ["libc6", "libpng16-16", "python3", "python3-numpy"],
-          "frontmost-mpi": ["frontmost", "libopenmpi3", "openmpi-bin"], "frontmost-gl": ["libc6", "libstdc++6"]}
+          "frontmost-mpi": ["frontmost", "libopenmpi3", "openmpi-bin"], "frontmost-gl": ["libc6", "libstdc++6"],
+          "frontmost-import": ["libassimp5", "libocct-data-exchange-7.6"]}
 MODULES = {"python3-frontmost": "python/frontmost/_core*.so", "frontmost-mpi": "frontmost_mpi.so",
-           "frontmost-gl": "src/gl/libfrontmost-gl.so"}  # where they are built
+           "frontmost-gl": "src/gl/libfrontmost-gl.so", "frontmost-import": "frontmost-import"}  # where they are built
 
 
 def fields(package):

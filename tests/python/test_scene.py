@@ -4,6 +4,7 @@ import base64
 import gc
 import json
 import os
+import pathlib
 import subprocess
 
 import numpy
@@ -209,8 +210,8 @@ def test_files_come_back(box, tmp_path):
     with pytest.raises(fm.Error) as raised:
         scene.save(tmp_path / "crate.xyz")
     assert raised.value.code == "unsupported"
-    with pytest.raises(ValueError, match="^format: 'step' is not one of stl, ply"):
-        fm.load(path, format="step")
+    with pytest.raises(ValueError, match="^format: 'usd' is not one of stl, ply"):
+        fm.load(path, format="usd")
     with pytest.raises(TypeError):
         fm.load(3)
 
@@ -308,3 +309,17 @@ def test_what_a_file_hides_is_told():
         "bufferViews": [{"buffer": 0, "byteLength": 36}],
         "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + corners}]}).encode())
     assert [o.name for o in scene.objects] == ["cup"] and scene.hidden_by_file == ["lid"]
+
+
+def test_cad_files_are_read_where_the_importer_is(monkeypatch):
+    cad = pathlib.Path(__file__).resolve().parent.parent.parent / "examples" / "cad" / "fixture.step"
+    monkeypatch.setenv("FRONTMOST_IMPORT", "/missing")
+    with pytest.raises(fm.Error, match="is read where frontmost-import is installed"):
+        fm.load(cad)
+    importer = pathlib.Path(os.environ["FRONTMOST_CLI"]).parent / "frontmost-import"
+    if not importer.exists():
+        pytest.skip("frontmost-import is not built")
+    monkeypatch.setenv("FRONTMOST_IMPORT", str(importer))
+    coarse, fine = fm.load(cad), fm.load(cad, mesh_tolerance=0.01, mesh_angle=5, import_seconds=100)
+    assert fine.triangle_count > 2 * coarse.triangle_count
+    assert fm.load(cad.read_bytes()).triangle_count == coarse.triangle_count

@@ -61,6 +61,28 @@ void check_attribute(const Scene& scene, std::size_t m, const Attribute<T>& attr
   }
 }
 
+void check_edges(const Scene& scene, std::size_t m) {
+  const Mesh& mesh = scene.meshes[m];
+  for (const std::vector<glm::uvec2>* edges : {&mesh.sharp_edges, &mesh.smooth_edges})
+    for (std::size_t i = 0; i < edges->size(); ++i)
+      if (const glm::uvec2& edge = (*edges)[i]; std::max(edge.x, edge.y) >= mesh.positions.size())
+        fail(scene, m,
+             "edge " + std::to_string(i) + ": vertex " + std::to_string(std::max(edge.x, edge.y)) +
+                 " is out of range, there are " + std::to_string(mesh.positions.size()));
+  std::size_t end = 0;  // of the ranges so far
+  for (std::size_t i = 0; i < mesh.edge_circles.size(); ++i) {
+    const EdgeCircle& circle = mesh.edge_circles[i];
+    const double length = glm::length(circle.axis);
+    if (!is_finite(circle.centre) || !(std::abs(length - 1) < 1e-6) || !std::isfinite(circle.radius) ||
+        circle.radius <= 0)
+      fail(scene, m, "circle " + std::to_string(i) + " has no place, no radius or no axis of unit length");
+    if (circle.first > mesh.sharp_edges.size() || circle.count > mesh.sharp_edges.size() - circle.first)
+      fail(scene, m, "circle " + std::to_string(i) + " names edges that do not exist");
+    if (circle.first < end) fail(scene, m, "circle " + std::to_string(i) + " names edges of an earlier circle");
+    end = std::size_t(circle.first) + circle.count;
+  }
+}
+
 void check_mesh(const Scene& scene, std::size_t m) {
   const Mesh& mesh = scene.meshes[m];
   check_attribute(scene, m, mesh.normals, "normal");
@@ -77,6 +99,7 @@ void check_mesh(const Scene& scene, std::size_t m) {
       fail(scene, m, "material " + std::to_string(id) + " does not exist");
   if (!mesh.face_ids.empty() && mesh.face_ids.size() != mesh.triangles.size())
     fail(scene, m, "face ids do not match the triangles");
+  check_edges(scene, m);
   if (mesh.is_curved() && mesh.material_ids.size() > 1) fail(scene, m, "a curved mesh has more than one material");
 }
 

@@ -13,6 +13,7 @@
 #include <tuple>
 
 #include "base/parallel.h"
+#include "geometry/buckets.h"
 #include "lines/strokes/parts.h"
 #include "rounds/found_rounds.h"
 
@@ -131,6 +132,24 @@ class ArcJoiner {
   std::vector<FoundCircle>& circles_;
   std::multimap<Key, std::size_t> places_;
 };
+
+/// The circle that a mesh states, with the arcs between its edges and the triangles beside them.
+FoundCircle found(const StatedCircle& stated, const SmoothMesh& mesh, const Buckets<std::uint32_t>& triangles_at) {
+  FoundCircle result{{stated.centre, stated.axis, stated.radius}, {}, {}};
+  for (const glm::uvec2& edge : stated.edges) {
+    const glm::dvec3 from = mesh.mesh.positions[edge.x], to = mesh.mesh.positions[edge.y];
+    const double turn = result.circle.turn_between(from, to);
+    result.arcs.push_back(turn > 0 ? FoundCircle::Arc{from, to, turn} : FoundCircle::Arc{to, from, -turn});
+    // A hub has many triangles.
+    const auto [hub, other] = triangles_at[edge.x].size() > triangles_at[edge.y].size() ? std::pair(edge.x, edge.y)
+                                                                                        : std::pair(edge.y, edge.x);
+    for (const std::uint32_t triangle : triangles_at[other]) {
+      const glm::uvec3& corners = mesh.mesh.triangles[triangle];
+      if (corners.x == hub || corners.y == hub || corners.z == hub) result.triangles.push_back(triangle);
+    }
+  }
+  return result;
+}
 
 constexpr std::size_t kSeedsPerPart = 4096;
 constexpr double kFlat = 0.9999999;  // cosine of 0.026 degrees: triangles that turn by less lie in one plane
@@ -408,8 +427,23 @@ std::vector<FoundCircle> find_circles(const SmoothMesh& mesh, const Execution& e
   });
   std::vector<FoundCircle> circles;
   ArcJoiner joiner(mesh.noise, circles);
+  // Stated circles come first, because arcs of the same circle that chains have are added to them.
+  if (!mesh.mesh.stated.circles().empty()) {
+    const std::vector<StatedCircle>& stated = mesh.mesh.stated.circles();
+    const auto list = [&](std::size_t triangle, const auto& add) {
+      for (int k = 0; k < 3; ++k) add(mesh.mesh.triangles[triangle][k], std::uint32_t(triangle));
+    };
+    const Buckets<std::uint32_t> triangles_at(mesh.mesh.positions.size(), mesh.mesh.triangles.size(), list, execution);
+    for (const StatedCircle& circle : stated)
+      if (FoundCircle ready = found(circle, mesh, triangles_at); !ready.arcs.empty()) joiner.add(std::move(ready));
+  }
   for (std::vector<FoundCircle>& list : lists)
     for (FoundCircle& circle : list) joiner.add(std::move(circle));
+  if (!mesh.mesh.stated.circles().empty())
+    for (FoundCircle& circle : circles) {
+      std::sort(circle.triangles.begin(), circle.triangles.end());
+      circle.triangles.erase(std::unique(circle.triangles.begin(), circle.triangles.end()), circle.triangles.end());
+    }
   return circles;
 }
 

@@ -91,7 +91,9 @@ struct SmoothMesh {
   }
   [[nodiscard]] bool is_smooth(std::uint32_t triangle, int side) const {
     const std::uint32_t other = across(triangle, side);
-    return other != no_index && glm::dot(normals[triangle], normals[other]) >= kWidestCosine;
+    const glm::uvec3& corners = mesh.triangles[triangle];
+    return other != no_index && !mesh.stated.are_sharp(corners[side], corners[side == 2 ? 0 : side + 1]) &&
+           glm::dot(normals[triangle], normals[other]) >= kWidestCosine;
   }
 };
 

@@ -59,6 +59,10 @@ Image load_exr(std::span<const std::byte>, const std::string& name) { refuse_for
 Scene read_3mf(Bytes, const ModelSource& source) { refuse_format(source.name(), "3MF (FRONTMOST_3MF)"); }
 #endif
 
+#if defined(FRONTMOST_NO_IMPORT)
+Scene read_imported(ModelFormat, Bytes bytes, const ModelSource& source) { refuse_import(bytes, source); }
+#endif
+
 #if defined(FRONTMOST_NO_SCENE_FILES)
 Scene read_scene_file(Bytes, const ModelSource& source) {
   refuse_format(source.name(), "scene files (FRONTMOST_SCENE_FILES)");

@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "frontmost/files.h"
+#include "io/descriptor.h"
 
 namespace frontmost {
 namespace {
@@ -44,18 +45,6 @@ std::size_t read_some(int descriptor, std::byte* to, std::size_t count, const st
     if (errno != EINTR) fail_to_read_by_errno(name, "cannot read");
   }
 }
-
-/// Closes a file descriptor.
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  ~Descriptor() { ::close(number_); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
- private:
-  int number_;
-};
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Formats that are not read: the message names a converter, ready to paste into a shell.
+// Formats that are not read, or not where frontmost-import is missing: the message names a converter, ready to paste
+// into a shell.
 #include <unistd.h>
 
 #include <fstream>
@@ -17,17 +18,24 @@ std::string by_suffix(const std::string& path) { return conversion_by_suffix(pat
 
 TEST(Converters, SuffixesNameTheCommand) {
   EXPECT_EQ(by_suffix("part.step"),
-            "STEP is not read; convert it first: gmsh -2 -clcurv 48 part.step -o part.stl (Debian package gmsh)");
+            "STEP is read where frontmost-import is installed; or convert it first: gmsh -2 -clcurv 48 part.step -o "
+            "part.stl (Debian package gmsh)");
   EXPECT_EQ(by_suffix("a/b.v2.IGS"),
-            "IGES is not read; convert it first: gmsh -2 -clcurv 48 a/b.v2.IGS -o a/b.v2.stl (Debian package gmsh)");
-  EXPECT_EQ(by_suffix("fox.fbx"),
-            "FBX is not read; convert it first: assimp export fox.fbx fox.glb (Debian package assimp-utils)");
+            "IGES is read where frontmost-import is installed; or convert it first: gmsh -2 -clcurv 48 a/b.v2.IGS -o "
+            "a/b.v2.stl (Debian package gmsh)");
+  EXPECT_EQ(
+      by_suffix("fox.fbx"),
+      "FBX is read where frontmost-import is installed; or convert it first: assimp export fox.fbx fox.glb (Debian "
+      "package assimp-utils)");
   EXPECT_EQ(by_suffix("scene.blend"),
             "Blender is not read; convert it first: blender -b scene.blend --python-expr \"import bpy; "
             "bpy.ops.export_scene.gltf(filepath='scene.glb')\" (Debian package blender)");
   EXPECT_THAT(by_suffix("toy.usdz"), HasSubstr("usd_import(filepath='toy.usdz'); "
                                                "bpy.ops.export_scene.gltf(filepath='toy.glb')\" (Blender from"));
-  for (const char* path : {"a.stp", "a.p21", "a.iges", "a.brep", "a.dae", "a.3ds", "a.x3d", "a.ifc", "a.usd", "a.usdc"})
+  for (const char* path : {"a.stp", "a.p21", "a.iges", "a.brep", "a.dae", "a.3ds", "a.x3d", "a.ifc", "a.dxf", "a.md2"})
+    EXPECT_THAT(by_suffix(path), HasSubstr(" is read where frontmost-import is installed; or convert it first: "))
+        << path;
+  for (const char* path : {"a.usd", "a.usdc"})
     EXPECT_THAT(by_suffix(path), HasSubstr(" is not read; convert it first: ")) << path;
   for (const char* path : {"a.stl", "a.3mf", "a.glb", "a.ac3", "a.", "a", ".step", "step", "a.d", "a.step "})
     EXPECT_EQ(by_suffix(path), "none") << path;
@@ -42,17 +50,20 @@ TEST(Converters, NamesAreWordsOfTheShell) {
 }
 
 TEST(Converters, ContentsAreKnownToo) {
+  setenv("FRONTMOST_IMPORT", "/missing", 1);
   const auto by_content = [](const std::string& text) {
     return test::error_of(text + std::string(100, ' '), std::nullopt);
   };
-  EXPECT_THAT(by_content("ISO-10303-21;\nHEADER;"), HasSubstr("model: STEP is not read; convert it first: gmsh"));
-  EXPECT_THAT(by_content("Kaydara FBX Binary  "), HasSubstr("FBX is not read"));
-  EXPECT_THAT(by_content("<?xml version=\"1.0\"?>\n<COLLADA xmlns="), HasSubstr("COLLADA is not read"));
+  EXPECT_THAT(by_content("ISO-10303-21;\nHEADER;"),
+              HasSubstr("model: STEP is read where frontmost-import is installed; or convert it first: gmsh"));
+  EXPECT_THAT(by_content("Kaydara FBX Binary  "), HasSubstr("FBX is read where"));
+  EXPECT_THAT(by_content("<?xml version=\"1.0\"?>\n<COLLADA xmlns="), HasSubstr("COLLADA is read where"));
   EXPECT_THAT(by_content("BLENDER-v304"), HasSubstr("Blender is not read"));
   EXPECT_THAT(by_content("PXR-USDC"), HasSubstr("USD is not read"));
-  EXPECT_THAT(by_content(std::string(72, ' ') + "S      1\n"), HasSubstr("IGES is not read"));
+  EXPECT_THAT(by_content(std::string(72, ' ') + "S      1\n"), HasSubstr("IGES is read where"));
   EXPECT_EQ(by_content("<html>"),
             "model: not a model that Frontmost can read (STL, PLY, OBJ, OFF, glTF, GLB, 3MF, a scene file)");
+  unsetenv("FRONTMOST_IMPORT");
 }
 
 TEST(Converters, ExtensionsOfGltfNameTheCommand) {

@@ -71,6 +71,72 @@ TEST(Gltf, PointsAndLinesArePassedOver) {
   }
 }
 
+/// Points and a strip of triangles over them, beside a primitive of lines.
+std::string beside_triangles(const std::string& lines) {
+  return R"({"attributes":{"POSITION":0},"mode":5},{"attributes":{"POSITION":0},)" + lines + "}";
+}
+
+TEST(Gltf, LinesBesideTrianglesAreEdges) {
+  const auto mesh_of = [](const std::string& lines) {
+    GltfMaker maker = points_maker();
+    maker.shorts({4, 3, 2, 1});
+    maker.show(beside_triangles(lines));
+    const Scene scene = load_glb(maker);
+    EXPECT_THAT(scene.warnings, testing::IsEmpty());
+    EXPECT_EQ(scene.meshes[0].triangles.size(), 3u);
+    return scene.meshes[0];
+  };
+  EXPECT_THAT(mesh_of(R"("mode":1,"indices":1)").sharp_edges, ElementsAre(glm::uvec2(4, 3), glm::uvec2(2, 1)));
+  EXPECT_THAT(mesh_of(R"("mode":3,"indices":1)").sharp_edges,
+              ElementsAre(glm::uvec2(4, 3), glm::uvec2(3, 2), glm::uvec2(2, 1)));
+  EXPECT_THAT(mesh_of(R"("mode":2,"indices":1)").sharp_edges,
+              ElementsAre(glm::uvec2(4, 3), glm::uvec2(3, 2), glm::uvec2(2, 1), glm::uvec2(1, 4)));
+  EXPECT_THAT(mesh_of(R"("mode":1)").sharp_edges, ElementsAre(glm::uvec2(0, 1), glm::uvec2(2, 3)));
+  const Mesh smooth = mesh_of(R"("mode":1,"indices":1,"extensions":{"FRONTMOST_edges":{"smooth":true}})");
+  EXPECT_EQ(smooth.sharp_edges.size(), 0u);
+  EXPECT_THAT(smooth.smooth_edges, ElementsAre(glm::uvec2(4, 3), glm::uvec2(2, 1)));
+  const Mesh round = mesh_of(R"("mode":1,"indices":1,"extensions":{"FRONTMOST_edges":{"circles":[)"
+                             R"({"centre":[1,2,3],"axis":[0,1,0],"radius":4,"first":1,"count":1}]}})");
+  ASSERT_EQ(round.edge_circles.size(), 1u);
+  EXPECT_EQ(round.edge_circles[0].centre, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(round.edge_circles[0].radius, 4);
+  EXPECT_EQ(round.edge_circles[0].first, 1u);
+}
+
+TEST(Gltf, EdgesMayHaveVerticesOfTheirOwn) {
+  GltfMaker maker = points_maker();
+  maker.floats({7, 7, 7, 8, 8, 8});
+  maker.show(R"({"attributes":{"POSITION":0},"mode":5},{"attributes":{"POSITION":1},"mode":1})");
+  const Mesh mesh = load_glb(maker).meshes[0];
+  ASSERT_EQ(mesh.positions.size(), 7u);
+  EXPECT_THAT(mesh.sharp_edges, ElementsAre(glm::uvec2(5, 6)));
+  EXPECT_EQ(mesh.positions[6], glm::vec3(8));
+}
+
+TEST(Gltf, WrongEdgesAreErrors) {
+  const auto error = [](const std::string& lines) {
+    GltfMaker maker = points_maker();
+    maker.shorts({0, 9});
+    maker.show(beside_triangles(lines));
+    return error_of(maker);
+  };
+  EXPECT_THAT(error(R"("mode":1,"indices":1)"), HasSubstr("edge 0: vertex 9 does not exist, there are 5"));
+  const auto circle = [&](const std::string& members) {
+    return error(R"("mode":1,"extensions":{"FRONTMOST_edges":{"circles":[{)" + members + "}]}}");
+  };
+  EXPECT_THAT(circle(R"("axis":[0,0,1],"radius":1,"first":0,"count":9)"), HasSubstr("edges that do not exist"));
+  EXPECT_THAT(circle(R"("axis":[0,0,1],"radius":1,"first":4294967294,"count":3)"),
+              HasSubstr("edges that do not exist"));
+  EXPECT_THAT(circle(R"("axis":[0,0,1],"first":0,"count":1)"), HasSubstr("no radius"));
+  EXPECT_THAT(circle(R"("radius":"big")"), HasSubstr("radius"));
+  EXPECT_THAT(circle(R"("axis":[0,0,1],"radius":1,"count":1)"), HasSubstr("edges that do not exist"));
+  const std::string round = R"("FRONTMOST_edges":{"circles":[{"axis":[0,0,1],"radius":1,"first":1,"count":2}])";
+  // The range may not reach into the next primitive, nor lie among smooth edges.
+  EXPECT_THAT(error(R"("mode":1,"extensions":{)" + round + R"(}}},{"attributes":{"POSITION":0},"mode":1)"),
+              HasSubstr("edges that do not exist"));
+  EXPECT_THAT(error(R"("mode":3,"extensions":{)" + round + R"(,"smooth":true}})"), HasSubstr("or smooth ones"));
+}
+
 TEST(Gltf, PrimitivesBecomeOneMeshInOrder) {
   GltfMaker maker = points_maker();
   maker.shorts({2, 3, 4});

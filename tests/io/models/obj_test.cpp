@@ -111,10 +111,27 @@ TEST(Obj, CloudsOfPointsAreCounted) {
   EXPECT_THAT(load_text("vt 0 0\n").warnings, ElementsAre("model: the file holds no triangles"));
 }
 
+TEST(Obj, LinesAreEdgesOfTheirObject) {
+  const std::string two = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 9 9 9\no a\nf 1 2 3\nl 1 2 3\no b\nf 2 3 4\nl -1 -2\nl 1 2\n";
+  const Scene scene = load_text(two, ModelFormat::obj);
+  ASSERT_EQ(scene.meshes.size(), 2u);
+  EXPECT_THAT(scene.meshes[0].sharp_edges, testing::ElementsAre(glm::uvec2(0, 1), glm::uvec2(1, 2)));
+  // The second line of b begins at a vertex that b lacks.
+  EXPECT_THAT(scene.meshes[1].sharp_edges, testing::ElementsAre(glm::uvec2(2, 1)));
+  const Scene one = load_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 3 1\n", ModelFormat::obj);
+  EXPECT_THAT(one.meshes[0].sharp_edges, testing::ElementsAre(glm::uvec2(2, 0)));
+  // Before any face, lines belong to no object.
+  const Scene early = load_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nf 1 2 3\n", ModelFormat::obj);
+  EXPECT_TRUE(early.meshes[0].sharp_edges.empty());
+  EXPECT_THAT(early.warnings.at(0), testing::HasSubstr("\"l\" are passed over"));
+  EXPECT_THAT(error_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 9\n", ModelFormat::obj),
+              testing::HasSubstr("vertex index 9 is out of range, there are 3"));
+}
+
 TEST(Obj, LinesGoOnAfterABackslashAndCommentsEndThem) {
-  const Scene scene = load_text("v 0 0 \\\n 0\r\nv 1 0 0#1\nv 0 1 0 # c\nf 1 2 \\\r\n 3\nl 1 2\nl 2 3\n# f 1 2 3\n");
+  const Scene scene = load_text("v 0 0 \\\n 0\r\nv 1 0 0#1\nv 0 1 0 # c\nf 1 2 \\\r\n 3\np 1 2\np 2 3\n# f 1 2 3\n");
   EXPECT_EQ(triangle_count(scene), 1u);
-  EXPECT_THAT(scene.warnings, ElementsAre("model: line 7: statements \"l\" are passed over"));
+  EXPECT_THAT(scene.warnings, ElementsAre("model: line 7: statements \"p\" are passed over"));
 }
 
 TEST(Obj, ErrorsNameTheLine) {

@@ -392,7 +392,11 @@ constexpr double kFaintest = 0.75;  // share of a triangle's greatest jump below
 constexpr std::size_t kFewestEdges = 3;  // a line of so many edges may end in the air
 constexpr double kLong = 0.05;           // share of the mesh's diagonal: a longer line may end in the air
 
-bool is_fold(const FeatureEdge& edge) { return edge.kind == EdgeKind::crease || edge.kind == EdgeKind::silhouette; }
+/// Folds need judgement, except sharp edges that the mesh states.
+bool needs_judgement(const FeatureEdge& edge, const WeldedMesh& mesh) {
+  return (edge.kind == EdgeKind::crease || edge.kind == EdgeKind::silhouette) &&
+         !mesh.stated.are_sharp(edge.from, edge.to);
+}
 
 std::vector<JudgedFold> judge_folds(const SeenMesh& seen, const CornerTable& table,
                                     const std::vector<FeatureEdge>& edges, const Execution& execution) {
@@ -400,8 +404,9 @@ std::vector<JudgedFold> judge_folds(const SeenMesh& seen, const CornerTable& tab
   std::vector<JudgedFold> folds(edges.size());
   parallel_for(execution, edges.size(), kEdgesPerPart, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      folds[i] = is_fold(edges[i]) ? judge_fold(near, edges[i])
-                                   : JudgedFold{FoldGrade::sharp, std::numeric_limits<double>::infinity()};
+      folds[i] = needs_judgement(edges[i], seen.mesh)
+                     ? judge_fold(near, edges[i])
+                     : JudgedFold{FoldGrade::sharp, std::numeric_limits<double>::infinity()};
   });
   return folds;
 }
@@ -423,7 +428,7 @@ class CreaseGraph {
   void follow_strong() {
     std::vector<std::uint32_t> open;
     for (std::size_t i = 0; i < edges_.size(); ++i)
-      if (is_drawn(i) && is_fold(edges_[i])) open.push_back(std::uint32_t(i));
+      if (is_drawn(i) && needs_judgement(edges_[i], mesh_)) open.push_back(std::uint32_t(i));
     while (!open.empty()) {
       const std::uint32_t edge = open.back();
       open.pop_back();
@@ -440,7 +445,7 @@ class CreaseGraph {
   void thin() {
     const auto for_each_side = [&](const auto& visit) {
       for (std::size_t i = 0; i < edges_.size(); ++i)
-        if (is_drawn(i) && is_fold(edges_[i]))
+        if (is_drawn(i) && needs_judgement(edges_[i], mesh_))
           for (const std::uint32_t triangle : {edges_[i].left, edges_[i].right}) visit(triangle, std::uint32_t(i));
     };
     Buffer<std::uint8_t> creases(mesh_.triangles.size(), 0);
@@ -512,7 +517,7 @@ class CreaseGraph {
       std::uint32_t next = no_index;
       for (const std::uint32_t edge : edges_at_[vertex])
         if (is_drawn(edge) && (line.empty() || edge != line.back())) next = edge;
-      if (next == no_index || !is_fold(edges_[next])) break;
+      if (next == no_index || !needs_judgement(edges_[next], mesh_)) break;
       if (!line.empty() && bend(line.back(), next, vertex) < kBend) break;
       line.push_back(next);
       vertex = other_end(next, vertex);

@@ -41,10 +41,15 @@ struct Classifier {
 
   /// An edge of two triangles wound and facing alike is no feature if the cosine of their normals is higher.
   [[nodiscard]] float plain_cosine() const {
-    if (has_borders) return std::numeric_limits<float>::infinity();
+    if (has_borders || takes_stated_edges()) return std::numeric_limits<float>::infinity();
     if (!options.creases) return -std::numeric_limits<float>::infinity();
     // A zero normal means that the normal is unknown. With a limit below 0, its edges would count as plain.
     return std::max(float(cosine), 0.0f) + kNormalRounding;
+  }
+
+  /// A crease angle that the caller asks for outweighs the edges that meshes state.
+  [[nodiscard]] bool takes_stated_edges() const {
+    return options.creases && !options.crease_angle && !mesh.stated.empty();
   }
 
   [[nodiscard]] std::optional<EdgeKind> kind_of(const SidePair& pair) const {
@@ -58,6 +63,10 @@ struct Classifier {
   [[nodiscard]] SurfaceOf surface_of(std::uint32_t triangle) const {
     const PrimitiveSource source = surfaces.source(mesh.ids[triangle]);
     return {source.instance, surfaces.scene().meshes[source.mesh].material_of(source.triangle)};
+  }
+
+  [[nodiscard]] std::uint32_t instance_of(std::uint32_t triangle) const {
+    return surfaces.source(mesh.ids[triangle]).instance;
   }
 
   /// The side of the edge, as seen from the eye, on which no triangle lies: 1 or -1; 0 if triangles lie on both sides.
@@ -78,6 +87,10 @@ struct Classifier {
     return scene.instances.size() == 1 && scene.meshes[scene.instances[0].mesh].material_ids.empty();
   }
   [[nodiscard]] bool is_crease(const Side& a, const Side& b) const {
+    if (takes_stated_edges()) {
+      if (mesh.stated.are_sharp(a.upper, third_of(mesh.triangles[a.triangle], a.upper, a.opposite))) return true;
+      if (mesh.stated.cover(instance_of(a.triangle)) || mesh.stated.cover(instance_of(b.triangle))) return false;
+    }
     // Neighbours that run along their edge the same way are wound against each other.
     const glm::dvec3 n = normal_of(mesh, a.triangle), m = normal_of(mesh, b.triangle);
     const double along = glm::dot(n, m) * (a.is_forward == b.is_forward ? -1.0 : 1.0);

@@ -169,6 +169,10 @@ class Seams {
     const auto [first, last] = std::minmax({place_of(seam, a), place_of(seam, b)});
     return {corners_.data() + first + 1, last - first - 1};
   }
+  /// Whether one of a seam's corners comes before another along its line.
+  [[nodiscard]] bool is_before(std::uint32_t seam, std::uint32_t a, std::uint32_t b) const {
+    return positions_[a][axes_[seam]] < positions_[b][axes_[seam]];
+  }
   [[nodiscard]] std::size_t count() const { return axes_.size(); }
   void leave(std::uint32_t seam) { is_open_[seam] = false; }
 
@@ -198,10 +202,6 @@ class Seams {
     const auto at =
         std::lower_bound(begin, end, vertex, [&](std::uint32_t a, std::uint32_t b) { return is_before(seam, a, b); });
     return std::size_t(at - corners_.begin());
-  }
-
-  [[nodiscard]] bool is_before(std::uint32_t seam, std::uint32_t a, std::uint32_t b) const {
-    return positions_[a][axes_[seam]] < positions_[b][axes_[seam]];
   }
 
   void sort_corners(const Execution& execution) {
@@ -298,6 +298,20 @@ void split(const Seams& seams, const Seamed& triangle, const Add& add) {
   split(seams, to, add);
 }
 
+/// Appends the pieces of the triangle's sides that are stated edges.
+void add_pieces(const Seams& seams, const Seamed& triangle, const StatedEdges& stated, std::vector<glm::uvec2>& sharp) {
+  for (int k = 0; k < 3; ++k) {
+    const std::uint32_t a = triangle.corners[k], b = triangle.corners[k == 2 ? 0 : k + 1];
+    if (triangle.seams[k] == no_index || !stated.are_sharp(a, b)) continue;
+    const std::span<const std::uint32_t> between = seams.between(triangle.seams[k], a, b);
+    if (between.empty()) continue;
+    for (std::size_t i = 1; i < between.size(); ++i) sharp.emplace_back(between[i - 1], between[i]);
+    const bool is_forward = seams.is_before(triangle.seams[k], a, b);
+    sharp.emplace_back(is_forward ? a : b, between.front());
+    sharp.emplace_back(between.back(), is_forward ? b : a);
+  }
+}
+
 void leave_out(WeldedMesh& mesh, const std::vector<std::uint32_t>& ascending) {
   std::size_t kept = 0;
   auto next = ascending.begin();
@@ -322,6 +336,8 @@ WeldedMesh weld(const Surfaces& surfaces, const Execution& execution) {
   WeldedMesh welded;
   const Buffer<std::uint32_t> numbers = number_places(surfaces.scene(), welded.positions, execution);
   Buffer<glm::uvec3> all = corners_of(surfaces, numbers, execution);
+  welded.stated =
+      StatedEdges(surfaces.scene(), numbers, all, {welded.positions.places.data(), welded.positions.size()}, execution);
   const auto is_kept = [&](std::size_t id) { return all[id].x != no_index; };
   const std::vector<std::size_t> before = counted(all.size(), is_kept, execution);
   welded.ids = Buffer<PrimitiveId>(before.back());
@@ -353,13 +369,16 @@ bool close_seams(WeldedMesh& mesh, const Buffer<std::int8_t>& facing, const Exec
   Buffer<glm::uvec3> triangles(count);
   Buffer<PrimitiveId> ids(count);
   std::size_t filled = 0;
+  std::vector<glm::uvec2> sharp;  // pieces of stated edges
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (!mesh.stated.empty()) add_pieces(seams, seamed(seams, mesh.triangles[i]), mesh.stated, sharp);
     split(seams, seamed(seams, mesh.triangles[i]), [&](const glm::uvec3& corners) {
       if (filled % kSeamsPerPoll == 0) check_cancelled(execution);
       triangles[filled] = corners;
       ids[filled++] = mesh.ids[i];
     });
   }
+  mesh.stated.add(sharp, execution);
   mesh.triangles = std::move(triangles);
   mesh.ids = std::move(ids);
   return true;

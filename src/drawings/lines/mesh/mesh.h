@@ -12,6 +12,7 @@
 
 #include "frontmost/scene.h"
 #include "geometry/buckets.h"
+#include "lines/mesh/stated_edges.h"
 #include "view/sight.h"
 
 namespace frontmost::lines_detail {
@@ -31,6 +32,7 @@ struct WeldedMesh {
   /// Each has three different vertices, counter-clockwise as seen from the front.
   Buffer<glm::uvec3> triangles;
   Buffer<PrimitiveId> ids;  ///< ids of the triangles
+  StatedEdges stated;
 };
 
 /// Welds the triangles of a scene. Triangles with a vertex that is not finite are left out, and triangles with two

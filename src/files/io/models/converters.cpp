@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Advice for files in formats that are not read: the program that converts them, and its command line. Reading these
-// formats takes large libraries; the advice takes a table.
+// Formats that this library does not read by itself. Some are read by frontmost-import, where it is installed. For the
+// others there is advice: the program that converts them, and its command line.
 #include <algorithm>
 
 #include "io/models/reader.h"
@@ -28,18 +28,26 @@ constexpr Converter blender_usd{
     R"sh(blender -b --python-expr "import bpy; bpy.ops.wm.read_factory_settings(use_empty=True); )sh"
     R"sh(bpy.ops.wm.usd_import(filepath='{in}'); bpy.ops.export_scene.gltf(filepath='{out}.glb')")sh"};
 
-struct Foreign {
+struct OtherFormat {
   std::string_view name;
   std::string_view suffixes;  ///< a blank behind each
   const Converter& converter;
+  std::optional<ModelFormat> imported{};  ///< how frontmost-import reads it; none: it does not
 };
-constexpr Foreign step{"STEP", ".step .stp .p21 ", gmsh}, iges{"IGES", ".iges .igs ", gmsh},
-    brep{"BREP", ".brep .brp ", gmsh}, fbx{"FBX", ".fbx ", assimp}, collada{"COLLADA", ".dae .zae ", assimp},
-    three_ds{"3DS", ".3ds ", assimp}, x3d{"X3D", ".x3d .x3db ", assimp}, lightwave{"LightWave", ".lwo ", assimp},
-    ac3d{"AC3D", ".ac .ac3d ", assimp}, ifc{"IFC", ".ifc .ifczip ", assimp}, amf{"AMF", ".amf ", assimp},
+constexpr OtherFormat step{"STEP", ".step .stp .p21 ", gmsh, ModelFormat::step},
+    iges{"IGES", ".iges .igs ", gmsh, ModelFormat::iges}, brep{"BREP", ".brep .brp ", gmsh, ModelFormat::brep},
+    fbx{"FBX", ".fbx ", assimp, ModelFormat::foreign}, collada{"COLLADA", ".dae .zae ", assimp, ModelFormat::foreign},
+    three_ds{"3DS", ".3ds ", assimp, ModelFormat::foreign}, x3d{"X3D", ".x3d .x3db ", assimp, ModelFormat::foreign},
+    lightwave{"LightWave", ".lwo .lxo ", assimp, ModelFormat::foreign},
+    ac3d{"AC3D", ".ac .ac3d ", assimp, ModelFormat::foreign}, ifc{"IFC", ".ifc .ifczip ", assimp, ModelFormat::foreign},
+    amf{"AMF", ".amf ", assimp, ModelFormat::foreign}, dxf{"DXF", ".dxf ", assimp, ModelFormat::foreign},
+    directx{"DirectX", ".x ", assimp, ModelFormat::foreign},
+    games{"this format of games",
+          ".ase .b3d .cob .hmp .irrmesh .iqm .md2 .md3 .md5mesh .mdl .ms3d .ogex .q3o .smd .xgl ", assimp,
+          ModelFormat::foreign},
     blend{"Blender", ".blend ", blender}, usd{"USD", ".usdz .usd .usda .usdc ", blender_usd};
-constexpr const Foreign* all[] = {&step,      &iges, &brep, &fbx, &collada, &three_ds, &x3d,
-                                  &lightwave, &ac3d, &ifc,  &amf, &blend,   &usd};
+constexpr const OtherFormat* all[] = {&step, &iges, &brep, &fbx, &collada, &three_ds, &x3d,   &lightwave,
+                                      &ac3d, &ifc,  &amf,  &dxf, &directx, &games,    &blend, &usd};
 
 struct ForeignExtension {
   std::string_view name;
@@ -84,18 +92,70 @@ std::string filled(std::string_view command, const std::string& path) {
 std::string advice(const Converter& converter, const std::string& path) {
   return "convert it first: " + filled(converter.command, path) + " (" + std::string(converter.program) + ")";
 }
-std::string advice(const Foreign& format, const std::string& path) {
-  return std::string(format.name) + " is not read; " + advice(format.converter, path);
+std::string advice(const OtherFormat& format, const std::string& path) {
+  return std::string(format.name) +
+         (format.imported ? " is read where frontmost-import is installed; or " : " is not read; ") +
+         advice(format.converter, path);
+}
+
+const OtherFormat* format_by_suffix(const std::string& path) {
+  const std::string suffix = lower_suffix(path);
+  if (suffix.size() < 2) return nullptr;
+  for (const OtherFormat* format : all)
+    if (format->suffixes.find(suffix + " ") != std::string_view::npos) return format;
+  return nullptr;
+}
+
+/// A format, and a name for a file of it.
+struct Recognized {
+  const OtherFormat* format = nullptr;
+  const char* name = "";
+};
+
+Recognized recognized(Bytes bytes) {
+  constexpr std::size_t window = 1024;
+  const std::string_view text = text_of(bytes.first(std::min(bytes.size(), window)));
+  const auto contains = [&](std::string_view word) { return text.find(word) != std::string_view::npos; };
+  if (text.starts_with("ISO-10303-21;"))
+    return contains("FILE_SCHEMA(('IFC") ? Recognized{&ifc, "model.ifc"} : Recognized{&step, "model.step"};
+  // Lines of IGES have 80 columns; the first one begins the start section.
+  if (text.size() >= 80 && text.substr(72, 8) == "S      1") return {&iges, "model.iges"};
+  if (text.starts_with("DBRep_DrawableShape") || contains("CASCADE Topology V")) return {&brep, "model.brep"};
+  if (text.starts_with("Kaydara FBX Binary") || text.starts_with("; FBX ")) return {&fbx, "model.fbx"};
+  if (contains("<COLLADA")) return {&collada, "model.dae"};
+  if (text.starts_with("BLENDER")) return {&blend, "model.blend"};
+  if (text.starts_with("PXR-USDC") || text.starts_with("#usda")) return {&usd, "model.usd"};
+  return {};
 }
 
 }  // namespace
 
 std::optional<std::string> conversion_by_suffix(const std::string& path) {
-  const std::string suffix = lower_suffix(path);
-  if (suffix.size() < 2) return std::nullopt;
-  for (const Foreign* format : all)
-    if (format->suffixes.find(suffix + " ") != std::string_view::npos) return advice(*format, path);
-  return std::nullopt;
+  const OtherFormat* const format = format_by_suffix(path);
+  return format == nullptr ? std::nullopt : std::optional(advice(*format, path));
+}
+
+void refuse_import(Bytes bytes, const ModelSource& source) {
+  const std::optional<std::string> by_suffix = conversion_by_suffix(source.name());
+  throw Error(
+      ErrorCode::unsupported, source.name(), "",
+      by_suffix ? *by_suffix : conversion_by_content(bytes).value_or("takes frontmost-import, which is not installed"));
+}
+
+std::optional<ModelFormat> imported_by_suffix(const std::string& path) {
+  const OtherFormat* const format = format_by_suffix(path);
+  return format == nullptr ? std::nullopt : format->imported;
+}
+
+std::optional<ModelFormat> imported_by_content(Bytes bytes) {
+  const OtherFormat* const format = recognized(bytes).format;
+  return format == nullptr ? std::nullopt : format->imported;
+}
+
+std::string foreign_suffix(const std::string& path, Bytes bytes) {
+  const Recognized found = recognized(bytes);
+  const std::string suffix = lower_suffix(format_by_suffix(path) == nullptr && found.format ? found.name : path);
+  return suffix.empty() ? suffix : suffix.substr(1);
 }
 
 std::optional<std::string> conversion_of_extensions(const std::vector<std::string>& names, const std::string& path) {
@@ -106,18 +166,8 @@ std::optional<std::string> conversion_of_extensions(const std::vector<std::strin
 }
 
 std::optional<std::string> conversion_by_content(Bytes bytes) {
-  constexpr std::size_t window = 1024;
-  const std::string_view text = text_of(bytes.first(std::min(bytes.size(), window)));
-  const auto contains = [&](std::string_view word) { return text.find(word) != std::string_view::npos; };
-  if (text.starts_with("ISO-10303-21;"))
-    return contains("FILE_SCHEMA(('IFC") ? advice(ifc, "model.ifc") : advice(step, "model.step");
-  // Lines of IGES have 80 columns; the first one begins the start section.
-  if (text.size() >= 80 && text.substr(72, 8) == "S      1") return advice(iges, "model.iges");
-  if (text.starts_with("Kaydara FBX Binary") || text.starts_with("; FBX ")) return advice(fbx, "model.fbx");
-  if (contains("<COLLADA")) return advice(collada, "model.dae");
-  if (text.starts_with("BLENDER")) return advice(blend, "model.blend");
-  if (text.starts_with("PXR-USDC") || text.starts_with("#usda")) return advice(usd, "model.usd");
-  return std::nullopt;
+  const Recognized found = recognized(bytes);
+  return found.format == nullptr ? std::nullopt : std::optional(advice(*found.format, found.name));
 }
 
 }  // namespace frontmost

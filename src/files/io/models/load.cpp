@@ -57,6 +57,11 @@ std::string points_told(const Scene& scene) {
 
 constexpr std::string_view builtin_prefix = "builtin:";
 
+/// Advice for a file that neither this library nor frontmost-import reads, by its suffix.
+std::optional<std::string> advice_by_suffix(const std::string& path) {
+  return imported_by_suffix(path) ? std::nullopt : conversion_by_suffix(path);
+}
+
 Scene read(ModelFormat format, Bytes bytes, const ModelSource& source) {
   switch (format) {
     case ModelFormat::stl: return read_stl(bytes, source);
@@ -66,6 +71,10 @@ Scene read(ModelFormat format, Bytes bytes, const ModelSource& source) {
     case ModelFormat::gltf: return read_gltf(bytes, source);
     case ModelFormat::threemf: return read_3mf(bytes, source);
     case ModelFormat::scene: return read_scene_file(bytes, source);
+    case ModelFormat::step:
+    case ModelFormat::iges:
+    case ModelFormat::brep:
+    case ModelFormat::foreign: return read_imported(format, bytes, source);
   }
   throw Error(ErrorCode::bad_argument, source.name(), "", "not a model format");
 }
@@ -82,10 +91,12 @@ Scene read_any(Bytes bytes, ModelSource& source, std::optional<ModelFormat> form
                        "not a model that Frontmost can read (STL, PLY, OBJ, OFF, glTF, GLB, 3MF, a scene file)"));
   if (*format == ModelFormat::scene) source.allow_outside(options.allow_outside);
   report_progress(source.execution(), "load", 0);
+  source.set_import_options(options.import);
   Scene scene = read(*format, bytes, source);
   scene.source.format = format;
   scene.name = source.stem();
-  scene.up = options.up.value_or(*format == ModelFormat::scene ? scene.up : default_up(*format));
+  const bool states_up = *format == ModelFormat::scene || is_imported(*format);
+  scene.up = options.up.value_or(states_up ? scene.up : default_up(*format));
   try {
     validate(scene);
   } catch (const Error& error) {
@@ -116,6 +127,10 @@ std::unique_ptr<ModelStream> open_stream(ModelFormat format, StreamStart start, 
     case ModelFormat::gltf: refuse_stream(source, "glTF");
     case ModelFormat::threemf: refuse_stream(source, "3MF");
     case ModelFormat::scene: refuse_stream(source, "a scene file");
+    case ModelFormat::step:
+    case ModelFormat::iges:
+    case ModelFormat::brep:
+    case ModelFormat::foreign: refuse_stream(source, "a model for frontmost-import");
   }
   throw Error(ErrorCode::bad_argument, source.name(), "", "not a model format");
 }
@@ -130,7 +145,7 @@ std::optional<ModelFormat> format_of_suffix(const std::string& path) {
   if (suffix == ".off") return ModelFormat::off;
   if (suffix == ".gltf" || suffix == ".glb") return ModelFormat::gltf;
   if (suffix == ".3mf") return ModelFormat::threemf;
-  return std::nullopt;
+  return imported_by_suffix(path);
 }
 
 Axis default_up(ModelFormat format) {
@@ -146,6 +161,7 @@ std::optional<ModelFormat> format_of_content(Bytes bytes) {
   if (starts_with_word(text, "ply")) return ModelFormat::ply;
   if (looks_like_off(text)) return ModelFormat::off;
   if (stl_encoding(bytes, bytes.size()) != StlEncoding::neither) return ModelFormat::stl;
+  if (const auto imported = imported_by_content(bytes)) return imported;
   if (looks_like_obj(text)) return ModelFormat::obj;
   return std::nullopt;
 }
@@ -156,11 +172,13 @@ Scene load_named(const std::string& reference, const ModelSource& scene_file) {
   const InputFile file = scene_file.open(reference, max_file_bytes);
   const auto opened = std::make_shared<OpenedFiles>(path);
   ModelSource source(printable(reference), scene_file.execution(), file, path, opened, scene_file.image_decoder());
-  if (const auto conversion = conversion_by_suffix(reference)) refuse(source, *conversion);
+  if (const auto advice = advice_by_suffix(reference)) refuse(source, *advice);
   auto format = format_of_suffix(reference);
   if (!format) format = format_of_content(file.bytes());
   if (format == ModelFormat::scene) refuse(source, "is a scene file; a scene file can place only models");
-  Scene scene = read_any(file.bytes(), source, format, {});
+  LoadOptions options;
+  options.import = scene_file.import_options();
+  Scene scene = read_any(file.bytes(), source, format, options);
   scene.source.files = opened->paths();
   return scene;
 }
@@ -181,7 +199,7 @@ Scene load(const std::string& path, const LoadOptions& options, const Execution&
   const InputFile file = InputFile::open(path, path);
   const auto opened = std::make_shared<OpenedFiles>(path);
   ModelSource source(path, execution, file, path, opened, options.image_decoder);
-  if (const auto conversion = options.format ? std::nullopt : conversion_by_suffix(path)) refuse(source, *conversion);
+  if (const auto advice = options.format ? std::nullopt : advice_by_suffix(path)) refuse(source, *advice);
   const auto format = options.format ? options.format : format_of_suffix(path);
   Scene scene = read_any(file.bytes(), source, format, options);
   for (std::filesystem::path& used : scene.source.files) opened->add(std::move(used));  // of a scene file's models

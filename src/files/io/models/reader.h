@@ -56,11 +56,16 @@ class ModelSource {
 
   /// Returns the name of the file in messages.
   [[nodiscard]] const std::string& name() const { return name_; }
+  /// Returns where the model lies; empty for memory and streams.
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// Returns the name without folder and suffix.
   [[nodiscard]] std::string stem() const;
   [[nodiscard]] const Execution& execution() const { return execution_; }
   /// Returns the decoder of images from LoadOptions, which may be null.
   [[nodiscard]] const ImageDecoder* image_decoder() const { return image_decoder_; }
+  /// Returns LoadOptions::import.
+  [[nodiscard]] const ImportOptions& import_options() const { return import_options_; }
+  void set_import_options(const ImportOptions& options) { import_options_ = options; }
   /// Allows files named inside a scene file to lie in these, too. \throws Error file_unreadable if one is no folder.
   void allow_outside(const std::vector<std::string>& folders);
 
@@ -93,6 +98,7 @@ class ModelSource {
   std::string name_;
   Execution execution_;
   const ImageDecoder* image_decoder_ = nullptr;
+  ImportOptions import_options_;
   std::optional<std::vector<std::filesystem::path>>
       allowed_;  ///< folders from which a scene file may load, without links
   const InputFile* file_ = nullptr;
@@ -152,6 +158,12 @@ inline constexpr std::size_t longest_name = 1024;
 /// Reads a scene file (io/scenes), which names models. Sets SceneSource::metres_per_unit and the up axis.
 [[nodiscard]] Scene read_scene_file(Bytes bytes, const ModelSource& source);
 
+/// Reads a model by the program frontmost-import. Sets SceneSource::metres_per_unit and the up axis.
+/// \throws Error unsupported, with advice, where the program is not there; limit_exceeded for too much time or memory.
+[[nodiscard]] Scene read_imported(ModelFormat format, Bytes bytes, const ModelSource& source);
+/// \throws Error unsupported, with advice for a model that frontmost-import would read.
+[[noreturn]] void refuse_import(Bytes bytes, const ModelSource& source);
+
 /// Loads the model that a scene file names, a built-in scene or a file beside it, as load() does.
 /// \throws Error as load() does, and unsupported if the model is a scene file itself.
 [[nodiscard]] Scene load_named(const std::string& reference, const ModelSource& scene_file);
@@ -179,7 +191,15 @@ enum class StlEncoding : std::uint8_t { binary, ascii, neither };
 /// The encoding of a file that should be STL; binary for one that may be broken. \throws Error if it is neither.
 [[nodiscard]] StlEncoding known_stl_encoding(Bytes start, std::uint64_t file_size, const ModelSource& source);
 
-// Formats that are not read, and programs that convert them.
+// Formats that are not read, or only by frontmost-import, and programs that convert them.
+
+/// Returns the format that frontmost-import reads by the suffix of `path`, or nothing.
+[[nodiscard]] std::optional<ModelFormat> imported_by_suffix(const std::string& path);
+/// Returns the format that frontmost-import reads, by the first bytes, or nothing.
+[[nodiscard]] std::optional<ModelFormat> imported_by_content(Bytes bytes);
+/// The suffix that stands for a foreign file's format, without its point: of `path`, or by the first bytes.
+[[nodiscard]] std::string foreign_suffix(const std::string& path, Bytes bytes);
+[[nodiscard]] inline bool is_imported(ModelFormat format) { return format >= ModelFormat::step; }
 
 /// Advice for a file of a known format, by the suffix of `path`, with the command that converts it; else empty.
 [[nodiscard]] std::optional<std::string> conversion_by_suffix(const std::string& path);

@@ -108,6 +108,7 @@ constexpr std::string_view supported_extensions[] = {
     "KHR_materials_transmission",
     "KHR_materials_volume",
     "KHR_materials_pbrSpecularGlossiness",
+    "FRONTMOST_edges",
 };
 
 /// Extensions whose decoder is an optional part of a build.

@@ -130,17 +130,17 @@ class MeshBuilder {
 
   Mesh build(const VertexPose& pose, std::vector<std::string>& warnings) {
     for (const Primitive& primitive : plan_.primitives) append_triangles(primitive, warnings);
+    for (const Primitive& lines : plan_.edges) append_edges(lines);
     place_blocks();
     std::size_t triangle = 0;
-    for (const Run& run : runs_) {
-      const VertexRun& block = blocks_[run.block];
-      // The shift wraps around if the run starts earlier in the mesh than in the accessor; the sum is right
-      // nevertheless.
-      const auto shift = std::uint32_t(block.first - block.range.first);
+    for (const Run& run : runs_)
       for (const std::size_t end = triangle + run.triangle_count; triangle < end; ++triangle)
-        mesh_.triangles[triangle] += shift;
-    }
+        mesh_.triangles[triangle] += shift_of(run.block);
+    for (const EdgeRun& run : edge_runs_)
+      for (std::size_t i = run.first; i < run.end; ++i) (*run.edges)[i] += shift_of(run.block);
     for (const VertexRun& block : blocks_) read_vertices(block, pose);
+    // A pose moves vertices off their circles.
+    if (!pose.joints.empty() || !pose.weights.empty()) mesh_.edge_circles.clear();
     return std::move(mesh_);
   }
 
@@ -149,6 +149,18 @@ class MeshBuilder {
   struct Run {
     std::size_t block, triangle_count;
   };
+  /// The edges of one primitive.
+  struct EdgeRun {
+    std::size_t block;
+    std::vector<glm::uvec2>* edges;
+    std::size_t first, end;
+  };
+
+  /// What is added to a primitive's vertex numbers. The sum is right even if the shift wraps around, because the block
+  /// starts earlier in the mesh than in the accessor.
+  [[nodiscard]] std::uint32_t shift_of(std::size_t block) const {
+    return std::uint32_t(blocks_[block].first - blocks_[block].range.first);
+  }
 
   void append_triangles(const Primitive& primitive, std::vector<std::string>& warnings) {
     const std::size_t corner_count =
@@ -165,7 +177,28 @@ class MeshBuilder {
     else
       read_strip_or_fan(primitive, corner_count, triangles);
     append_material(mesh_.material_ids, first, count, primitive.material);
-    include(primitive, triangles);
+    // A primitive without triangles has a run, too, so that runs and primitives have equal numbers.
+    runs_.push_back({include(primitive, {count == 0 ? nullptr : &triangles[0].x, 3 * count}, 3), count});
+  }
+
+  void append_edges(const Primitive& lines) {
+    std::size_t count = lines.indices != no_index ? data_.accessor(lines.indices).count : lines.vertex_count;
+    budget_.charge(count, sizeof(glm::uvec2) + sizeof(std::uint32_t), lines.place, source_);
+    std::vector<std::uint32_t> ends(count);
+    read_corners(lines, {0, count}, ends.data());
+    if (lines.mode == Mode::line_loop && count > 0) ends.push_back(ends.front());
+    std::vector<glm::uvec2>& edges = lines.is_smooth ? mesh_.smooth_edges : mesh_.sharp_edges;
+    const std::size_t first = edges.size();
+    for (std::size_t i = 1; i < ends.size(); i += lines.mode == Mode::lines ? 2 : 1)
+      edges.emplace_back(ends[i - 1], ends[i]);
+    edge_runs_.push_back({include(lines, ends, 2), &edges, first, edges.size()});
+    for (EdgeCircle circle : lines.circles) {
+      const std::size_t own = edges.size() - first;
+      if (lines.is_smooth || circle.first > own || circle.count > own - circle.first)
+        source_.fail(lines.place, "a circle names edges that do not exist, or smooth ones");
+      circle.first += std::uint32_t(first);
+      mesh_.edge_circles.push_back(circle);
+    }
   }
 
   void read_corners(const Primitive& primitive, ElementRange range, std::uint32_t* out) const {
@@ -187,31 +220,32 @@ class MeshBuilder {
                          : glm::uvec3(corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]);
   }
 
-  /// Checks vertex numbers and widens the range of needed vertices.
-  void include(const Primitive& primitive, std::span<const glm::uvec3> triangles) {
+  /// Checks vertex numbers and widens the range of needed vertices. `width`: vertices of a triangle or an edge.
+  /// \returns the primitive's block.
+  std::size_t include(const Primitive& primitive, std::span<const std::uint32_t> vertices, std::size_t width) {
     std::uint32_t least = no_index, greatest = 0;
-    for (const glm::uvec3& t : triangles) {
-      least = std::min({least, t.x, t.y, t.z});
-      greatest = std::max({greatest, t.x, t.y, t.z});
+    for (const std::uint32_t vertex : vertices) {
+      least = std::min(least, vertex);
+      greatest = std::max(greatest, vertex);
     }
-    if (!triangles.empty() && greatest >= primitive.vertex_count) fail_index(primitive, triangles);
-    // A primitive without triangles has a run, too, so that runs and primitives have equal numbers.
+    if (!vertices.empty() && greatest >= primitive.vertex_count) fail_index(primitive, vertices, width);
     const std::size_t block_id = block_of(primitive);
-    runs_.push_back({block_id, triangles.size()});
-    if (triangles.empty()) return;
+    if (vertices.empty()) return block_id;
     ElementRange& range = blocks_[block_id].range;
     const std::size_t end = std::max(range.first + range.count, std::size_t(greatest) + 1);
     range.first = range.count == 0 ? least : std::min<std::size_t>(range.first, least);
     range.count = end - range.first;
+    return block_id;
   }
 
-  [[noreturn]] void fail_index(const Primitive& primitive, std::span<const glm::uvec3> triangles) const {
-    for (std::size_t i = 0;; ++i)
-      for (int k = 0; k < 3; ++k)
-        if (triangles[i][k] >= primitive.vertex_count)
-          source_.fail(primitive.place + ".indices",
-                       "triangle " + std::to_string(i) + ": vertex " + std::to_string(triangles[i][k]) +
-                           " does not exist, there are " + std::to_string(primitive.vertex_count));
+  [[noreturn]] void fail_index(const Primitive& primitive, std::span<const std::uint32_t> vertices,
+                               std::size_t width) const {
+    std::size_t i = 0;
+    while (vertices[i] < primitive.vertex_count) ++i;
+    source_.fail(primitive.place + ".indices", (width == 3 ? "triangle " : "edge ") + std::to_string(i / width) +
+                                                   ": vertex " + std::to_string(vertices[i]) +
+                                                   " does not exist, there are " +
+                                                   std::to_string(primitive.vertex_count));
   }
 
   std::size_t block_of(const Primitive& primitive) {
@@ -290,6 +324,7 @@ class MeshBuilder {
   const ModelSource& source_;
   Mesh mesh_;
   std::vector<Run> runs_;
+  std::vector<EdgeRun> edge_runs_;
   std::vector<VertexRun> blocks_;
   std::map<VertexSet, std::size_t> block_numbers_;
 };

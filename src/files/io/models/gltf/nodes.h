@@ -39,7 +39,7 @@ inline bool operator<(const VertexSet& a, const VertexSet& b) {
   return std::tie(a.base, a.targets, a.joints, a.weights) < std::tie(b.base, b.targets, b.joints, b.weights);
 }
 
-enum class Mode : std::uint8_t { triangles = 4, strip = 5, fan = 6 };
+enum class Mode : std::uint8_t { lines = 1, line_loop = 2, line_strip = 3, triangles = 4, strip = 5, fan = 6 };
 
 struct Primitive {
   std::string place;
@@ -47,20 +47,24 @@ struct Primitive {
   Mode mode = Mode::triangles;
   std::uint32_t indices = no_index, material = no_index;
   std::size_t vertex_count = 0;
+  // Lines only, from the extension FRONTMOST_edges:
+  bool is_smooth = false;
+  std::vector<EdgeCircle> circles;
 };
 
 /// A checked mesh of the file, without its data.
 struct MeshPlan {
   std::string name, place;
   std::vector<Primitive> primitives;  ///< only primitives with triangles
+  std::vector<Primitive> edges;       ///< primitives with lines, beside triangles
   std::vector<double> weights;        ///< weights of morph targets; may be empty
   std::size_t target_count = 0;
   std::uint32_t texcoord_sets = 1;  ///< sets to read: the first, and those that materials use; bit k: set k
   bool has_joints = false;
 };
 
-/// Checks primitives and their accessors. Points, lines and primitives without positions cause warnings. Arrays of
-/// compressed primitives are decoded and added to `data`.
+/// Checks primitives and their accessors. Lines beside triangles become edges. Points, other lines and primitives
+/// without positions cause warnings. Arrays of compressed primitives are decoded and added to `data`.
 [[nodiscard]] std::vector<MeshPlan> plan_meshes(const JsonValue& root, Data& data, const MaterialList& materials,
                                                 std::vector<std::string>& warnings);
 

@@ -6,6 +6,7 @@
 //
 // The resulting MeshPlan can be read without further checks.
 #include <algorithm>
+#include <utility>
 
 #include "io/models/gltf/nodes.h"
 
@@ -86,6 +87,10 @@ class Planner {
     for (std::size_t i = 0; i < primitives.size(); ++i) {
       std::optional<Primitive> primitive = read(primitives[i]);
       if (!primitive) continue;
+      if (primitive->mode < Mode::triangles) {
+        plan.edges.push_back(*std::move(primitive));
+        continue;
+      }
       const std::size_t targets = primitive->vertices.targets.size();
       if (target_count.value_or(targets) != targets)
         primitives[i].fail(std::to_string(targets) + " morph targets where others have " +
@@ -96,6 +101,9 @@ class Planner {
       plan.primitives.push_back(*std::move(primitive));
     }
     plan.target_count = target_count.value_or(0);
+    if (plan.primitives.empty())
+      for (const Primitive& lines : std::exchange(plan.edges, {}))
+        warnings_.push_back(lines.place + ": lines are not drawn");
     // In a mesh of only points and lines, no morph targets were counted.
     if (!plan.weights.empty() && !plan.primitives.empty() && plan.weights.size() != plan.target_count)
       json_.fail(std::to_string(plan.weights.size()) + " weights for " + std::to_string(plan.target_count) +
@@ -124,13 +132,28 @@ class Planner {
     const std::size_t points =
         primitive.indices == no_index ? primitive.vertex_count : data_.accessor(primitive.indices).count;
     if (mode == 0) return skip(json, "its " + std::to_string(points) + " points are not drawn");
-    if (mode < 4) return skip(json, "lines are not drawn");
     if (mode > 6) return skip(json, "mode " + std::to_string(mode) + " is unknown");
+    if (decoded && mode < 4) return skip(json, "lines are not drawn");
     primitive.mode = decoded ? Mode::triangles : Mode(mode);  // Draco stores strips as lists, too
     if (primitive.vertices.base.position == no_index) return skip(json, "has no POSITION, nothing to draw");
+    if (primitive.mode < Mode::triangles) read_edges(json, primitive);
     if (!decoded && json.extension("KHR_draco_mesh_compression"))
       warnings_.push_back(json.place() + ": the uncompressed data are taken");
     return primitive;
+  }
+
+  static void read_edges(const JsonValue& json, Primitive& primitive) {
+    const std::optional<JsonValue> edges = json.extension("FRONTMOST_edges");
+    if (!edges) return;
+    primitive.is_smooth = edges->bool_or("smooth", false);
+    edges->each("circles", [&](const JsonValue& circle) {
+      EdgeCircle& read = primitive.circles.emplace_back();
+      circle.read_vector("centre", read.centre);
+      circle.read_vector("axis", read.axis);
+      read.radius = circle.number_or("radius", 0);
+      read.first = circle.index_or_none("first", no_index);
+      read.count = circle.index_or_none("count", no_index);
+    });
   }
 
   /// Returns the sets of texture coordinates that the primitive's material uses, a bit for each.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // OBJ: polygons with separate indices for positions, texture coordinates and normals. Each run of faces under one `o`
-// or `g` name becomes a mesh and its instance, in file order. Curves, lines and points are skipped.
+// or `g` name becomes a mesh and its instance, in file order. Lines become the mesh's edges. Curves and points are
+// skipped.
 //
 //   v 0 0 0              lists of the whole file: positions, perhaps with a colour, ...
 //   vt 0.5 1             texture coordinates, ...
@@ -66,6 +67,12 @@ class Renumbering {
       }
     return used_;
   }
+  /// Renumbers the edges between entries that the last call of apply() has renumbered, and leaves out the others.
+  void apply(std::vector<glm::uvec2>& edges) const {
+    std::erase_if(edges,
+                  [&](const glm::uvec2& edge) { return numbers_[edge.x] == no_index || numbers_[edge.y] == no_index; });
+    for (glm::uvec2& edge : edges) edge = {numbers_[edge.x], numbers_[edge.y]};
+  }
 
  private:
   std::vector<std::uint32_t> numbers_, used_;
@@ -111,6 +118,7 @@ void finish_meshes(Scene& scene, ObjPool pool) {
     for (Mesh& mesh : scene.meshes) {
       const auto& used = positions.apply(mesh.triangles);
       mesh.positions = gather(pool.positions, used);
+      positions.apply(mesh.sharp_edges);
       if (!pool.colors.empty()) mesh.colors.values = gather(pool.colors, used);
       mesh.texcoords.values = gather(pool.texcoords, texcoords.apply(mesh.texcoords.triangles));
       mesh.normals.values = gather(pool.normals, normals.apply(mesh.normals.triangles));
@@ -180,6 +188,8 @@ class ObjReader {
     } else if (word == "g") {
       const std::string name = name_of(text_.rest());
       start_group(name.empty() || name == "default" || name == "off" ? object_ : name);
+    } else if (word == "l" && !is_new_group_ && !scene_.meshes.empty()) {
+      line();
     } else if (word != "s") {
       pass_over(word);
     }
@@ -276,6 +286,15 @@ class ObjReader {
     add_corners(mesh.texcoords, triangles, uvs_.corners, before);
     add_corners(mesh.normals, triangles, normals_.corners, before);
     append_material(mesh.material_ids, before, triangles.size(), material_);
+  }
+
+  /// Reads l v v v ..., edges of the object; v may be v/vt.
+  void line() {
+    for (IndexList* const list : {&vertices_, &uvs_, &normals_}) list->corners.clear();
+    while (corner()) {
+    }
+    for (std::size_t i = 1; i < vertices_.corners.size(); ++i)
+      scene_.meshes.back().sharp_edges.emplace_back(vertices_.corners[i - 1], vertices_.corners[i]);
   }
 
   void pass_over(std::string_view word) {

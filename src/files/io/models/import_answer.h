@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The answer of frontmost-import, taken from the bytes that it sends, which may be anything.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/models/import_frames.h"
+#include "io/models/reader.h"
+
+namespace frontmost {
+
+struct ImportAnswer {
+  std::vector<std::byte> model;  ///< binary glTF
+  std::vector<std::string> warnings;
+  std::optional<double> metres;  ///< length of a unit
+  Axis up = Axis::z;
+  bool has_ended = false;
+};
+
+class ImportReceiver {
+ public:
+  /// `most_bytes`: greatest size of the model.
+  ImportReceiver(const ModelSource& source, std::uint64_t most_bytes) : source_(source), most_bytes_(most_bytes) {}
+
+  /// Takes the whole frames at the start of `bytes`, and removes them. Reports progress.
+  /// \throws Error file_malformed for an error that is sent, and for frames of unknown kinds or sizes.
+  void take(std::vector<std::byte>& bytes);
+
+  ImportAnswer answer;
+
+ private:
+  void take(import_frames::Kind kind, std::string_view text);
+  void take_space(std::string_view text);
+
+  const ModelSource& source_;
+  const std::uint64_t most_bytes_;
+};
+
+/// The scene of a whole answer.
+[[nodiscard]] Scene scene_of(const ImportAnswer& answer, const ModelSource& source);
+
+}  // namespace frontmost

@@ -1,0 +1,409 @@
+// SPDX-License-Identifier: Apache-2.0
+// Models that frontmost-import reads: parts made for the tests by OpenCASCADE, files that are broken, and importers
+// that are.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "frontmost/frontmost.h"
+#include "io/models/import_frames.h"
+#include "support/effort.h"
+#include "support/models.h"
+#include "support/random_scene.h"
+#include "support/scratch_folder.h"
+
+namespace frontmost::test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+/// Names the importer while it lives.
+class Importer {
+ public:
+  explicit Importer(const std::string& path) { setenv("FRONTMOST_IMPORT", path.c_str(), 1); }
+  ~Importer() { unsetenv("FRONTMOST_IMPORT"); }
+};
+
+std::string error_of(const std::string& path, const LoadOptions& options = {}, const Execution& execution = {}) {
+  try {
+    (void)load(path, options, execution);
+    return "read";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+// --- Importers that misbehave: shell scripts in its place.
+
+class Impostor {
+ public:
+  /// `text`: what the shell does in place of importing.
+  explicit Impostor(const std::string& text) : importer_(folder_.file("import")) {
+    std::ofstream(folder_.file("import")) << "#!/bin/sh\n" << text << "\n";
+    fs::permissions(folder_.file("import"), fs::perms::owner_all);
+    std::ofstream(part()) << "ISO-10303-21;";
+  }
+  [[nodiscard]] std::string part() const { return folder_.file("part.step"); }
+  [[nodiscard]] std::string error(const LoadOptions& options = {}, const Execution& execution = {}) const {
+    const std::string text = error_of(part(), options, execution);
+    EXPECT_THAT(text, testing::StartsWith(part() + ": "));
+    return text.substr(std::min(text.size(), part().size() + 2));
+  }
+  [[nodiscard]] std::string operator/(const std::string& name) const { return folder_.file(name); }
+
+ private:
+  ScratchFolder folder_;
+  Importer importer_;
+};
+
+/// A frame as a shell prints it.
+std::string frame_of(char kind, const std::string& payload) {
+  std::string text = "printf '";
+  text += kind;
+  for (int i = 0; i < 8; ++i) {
+    char octal[8];
+    std::snprintf(octal, sizeof octal, "\\%03o", unsigned(payload.size() >> 8 * i & 255));
+    text += octal;
+  }
+  return text + payload + "'\n";
+}
+
+TEST(Import, WithoutTheProgramTheErrorNamesAConverter) {
+  const ScratchFolder folder;
+  const Importer none(folder.file("none"));
+  std::ofstream(folder.file("part.step")) << "ISO-10303-21;";
+  EXPECT_EQ(error_of(folder.file("part.step")),
+            folder.file("part.step") +
+                ": STEP is read where frontmost-import is installed; or convert it first: gmsh -2 "
+                "-clcurv 48 " +
+                folder.file("part.step") + " -o " + folder.file("part.stl") + " (Debian package gmsh)");
+}
+
+TEST(Import, AnImporterThatCrashesOrSaysNothingIsAnError) {
+  EXPECT_EQ(Impostor("kill -SEGV $$").error(), "could not be read: frontmost-import crashed (Segmentation fault)");
+  EXPECT_EQ(Impostor("exit 0").error(), "could not be read: frontmost-import ended without an answer");
+  EXPECT_EQ(Impostor(frame_of('p', "0.5") + "exit 3").error(),
+            "could not be read: frontmost-import ended without an answer");
+  EXPECT_EQ(Impostor(frame_of('e', "the file has no shapes")).error(), "could not be read: the file has no shapes");
+}
+
+TEST(Import, NothingOfTheImporterIsLeft) {
+  // Its output is closed, but it goes on; and a process of its own goes on after it.
+  LoadOptions options;
+  options.import.seconds = 0.2;
+  EXPECT_THAT(Impostor("exec >&-; sleep 1000").error(options), HasSubstr("could not be read within 0.2 seconds"));
+  const Impostor leaves_one("sleep 1000 >/dev/null 2>&1 & echo $! > \"$0.id\"; exit 0");
+  EXPECT_EQ(leaves_one.error(), "could not be read: frontmost-import ended without an answer");
+  std::ifstream id(leaves_one / "import.id");
+  pid_t number = 0;
+  ASSERT_TRUE(id >> number);
+  // A killed process goes on for a moment, and stays until its parent waits for it.
+  for (std::string state = "R"; state != "" && state != "Z";) {
+    std::ifstream status("/proc/" + std::to_string(number) + "/stat");
+    std::string id_text, name;
+    if (!(status >> id_text >> name >> state)) state = "";
+    usleep(1000);
+  }
+}
+
+TEST(Import, AnImporterMaySendAnything) {
+  EXPECT_EQ(Impostor("printf 'hello, world'").error(), "frontmost-import sends a frame of 8031923835658595429 bytes");
+  EXPECT_EQ(Impostor(frame_of('z', "?")).error(), "frontmost-import sends a frame of unknown kind \"z\"");
+  EXPECT_THAT(Impostor("printf 'p\\001\\000\\000\\000\\000\\000\\000'").error(), HasSubstr("without an answer"));
+  // Sizes that are only claimed take no memory.
+  EXPECT_THAT(Impostor("printf 'm\\000\\000\\000\\377\\000\\000\\000\\000'").error(), HasSubstr("without an answer"));
+  EXPECT_THAT(Impostor("printf 'm\\000\\000\\000\\000\\377\\000\\000\\000'").error(), HasSubstr("sends a frame of"));
+  EXPECT_THAT(Impostor(frame_of('m', "glTF is not this")).error(), HasSubstr("GLB header"));
+  EXPECT_THAT(Impostor(frame_of('e', "\x1b[31mred")).error(), HasSubstr("could not be read: \\x1B[31mred"));
+  // Many progresses and warnings, and numbers that are none.
+  EXPECT_THAT(Impostor("for i in $(seq 500); do " + frame_of('p', "nan") + frame_of('w', "odd") + frame_of('s', "") +
+                       frame_of('s', "inf q") + "done; " + frame_of('e', "over"))
+                  .error(),
+              HasSubstr("over"));
+}
+
+TEST(Import, TimeIsLimitedAndTheImporterGoes) {
+  LoadOptions options;
+  options.import.seconds = 0.2;
+  const Impostor impostor("echo $$ > \"$0.id\"; sleep 1000");
+  EXPECT_EQ(impostor.error(options), "could not be read within 0.2 seconds (--import-seconds)");
+  std::ifstream id(impostor / "import.id");
+  // It may have been ended before its first line.
+  if (pid_t number = 0; id >> number) EXPECT_NE(kill(number, 0), 0);
+}
+
+TEST(Import, ACancelledLoadEndsTheImporter) {
+  const CountingWatch watch(3);
+  EXPECT_EQ(error_of(Impostor("sleep 1000").part(), {}, watch.execution()), "cancelled");
+}
+
+TEST(Import, OptionsAreChecked) {
+  const Impostor impostor("exit 0");
+  LoadOptions options;
+  options.import.angle = 0;
+  EXPECT_THAT(error_of(impostor.part(), options), HasSubstr("angle: must be above"));
+  options.import = {.tolerance = -1};
+  EXPECT_THAT(error_of(impostor.part(), options), HasSubstr("tolerance: must be"));
+}
+
+#ifdef FRONTMOST_IMPORT_POLYGONS
+
+/// A triangle (0, 0, 0), (1, 0, 0), (0, 2, 0), written by hand in each format.
+TEST(Import, ForeignMeshesAreRead) {
+  const Importer importer(FRONTMOST_IMPORT_BUILT);
+  struct Known {
+    const char* suffix;
+    Axis up;
+    std::optional<double> metres;
+    double scale;  ///< what assimp makes of the file's unit
+  };
+  for (const Known& known : {Known{"ac", Axis::y, {}, 1}, Known{"ase", Axis::y, {}, 1}, Known{"dae", Axis::y, 1, 0.01},
+                             Known{"dxf", Axis::y, {}, 1}, Known{"fbx", Axis::z, 1, 1}, Known{"x", Axis::y, {}, 1},
+                             Known{"x3d", Axis::y, {}, 1}}) {
+    SCOPED_TRACE(known.suffix);
+    const Scene scene = load(std::string(FRONTMOST_MESHES "/triangle.") + known.suffix);
+    EXPECT_EQ(scene.source.format, ModelFormat::foreign);
+    EXPECT_EQ(scene.up, known.up);
+    ASSERT_EQ(scene.source.metres_per_unit.has_value(), known.metres.has_value());
+    EXPECT_NEAR(scene.source.metres_per_unit.value_or(0), known.metres.value_or(0), 1e-9);
+    ASSERT_EQ(triangle_count(scene), 1u);
+    EXPECT_EQ(scene.instances[0].name.find('$'), std::string::npos) << scene.instances[0].name;
+    const Surfaces surfaces(scene);
+    const auto t = surfaces.corners(0);
+    EXPECT_NEAR(glm::length(glm::cross(t[1] - t[0], t[2] - t[0])), 2 * known.scale * known.scale, 1e-6);
+  }
+}
+
+#endif
+
+#ifdef FRONTMOST_MAKE_PARTS
+
+/// The parts of make_parts.cpp.
+class CadFiles : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new ScratchFolder;
+    ASSERT_EQ(std::system((std::string(FRONTMOST_MAKE_PARTS " ") + folder_->path().string() + " > /dev/null").c_str()),
+              0);
+  }
+  static void TearDownTestSuite() { delete std::exchange(folder_, nullptr); }
+  [[nodiscard]] static std::string file(const std::string& name) { return folder_->file(name); }
+
+  static inline ScratchFolder* folder_ = nullptr;
+  Importer importer_{FRONTMOST_IMPORT_BUILT};
+};
+
+double volume_of(const Surfaces& surfaces) {
+  double six_times = 0;
+  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
+    const auto t = surfaces.corners(id);
+    six_times += glm::dot(glm::dvec3(t[0]), glm::cross(glm::dvec3(t[1]), glm::dvec3(t[2])));
+  }
+  return six_times / 6;
+}
+
+double area_of(const Surfaces& surfaces) {
+  double area = 0;
+  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
+    const auto t = surfaces.corners(id);
+    area += 0.5 * glm::length(glm::cross(glm::dvec3(t[1] - t[0]), glm::dvec3(t[2] - t[0])));
+  }
+  return area;
+}
+
+constexpr double kPi = std::numbers::pi;
+/// A plate of 120 x 80 x 12 mm with four holes of radius 6 and a fillet of radius 3.
+const double plate_volume = 120 * 80 * 12 - 4 * kPi * 36 * 12 - 120 * (1 - kPi / 4) * 9;
+const double plate_area = 2 * 120 * 80 + 2 * (120 + 80) * 12 - 2 * 120 * 3 + 120 * kPi * 3 / 2 - 2 * (1 - kPi / 4) * 9 -
+                          8 * kPi * 36 + 4 * 2 * kPi * 6 * 12;
+
+TEST_F(CadFiles, AnAssemblyKeepsNamesPlacesColoursAndItsUnit) {
+  const Scene scene = load(file("fixture.step"));
+  ASSERT_EQ(scene.instances.size(), 3u);
+  EXPECT_EQ(scene.instances[0].name, "base");
+  EXPECT_EQ(scene.instances[1].name, "pin left");
+  EXPECT_EQ(scene.instances[2].name, "pin right");
+  EXPECT_EQ(scene.meshes.size(), 2u) << "a part that is placed twice is there once";
+  EXPECT_EQ(scene.instances[1].mesh, scene.instances[2].mesh);
+  EXPECT_EQ(glm::dvec3(scene.instances[2].world_from_mesh[3]), glm::dvec3(100, 60, 0));
+  EXPECT_EQ(scene.source.format, ModelFormat::step);
+  EXPECT_EQ(scene.source.metres_per_unit, 0.001);
+  EXPECT_EQ(scene.up, Axis::z);
+  const Material& red = scene.materials[scene.meshes[0].material_of(0)];
+  EXPECT_EQ(red.base_color, glm::vec4(1, 0, 0, 1));
+  EXPECT_EQ(scene.materials[scene.meshes[scene.instances[1].mesh].material_of(0)].base_color, glm::vec4(0, 0, 1, 1));
+  const double pins = 2 * kPi * 36 * 30;
+  EXPECT_NEAR(volume_of(Surfaces(scene)), plate_volume + pins, 0.01 * plate_volume);
+}
+
+TEST_F(CadFiles, CoordinatesAreThoseOfTheFile) {
+  const Scene inch = load(file("fixture-inch.step"));
+  EXPECT_EQ(inch.source.metres_per_unit, 0.0254);
+  const Surfaces surfaces(inch);
+  EXPECT_NEAR(surfaces.bounds().high.x, 120 / 25.4, 1e-5);
+  // 400 m away, where floats have steps of 0.03 mm.
+  const Scene far = load(file("plate-far.step"));
+  EXPECT_NEAR(volume_of(Surfaces(far)), plate_volume, 0.01 * plate_volume);
+  const Drawing drawing = draw_lines(Surfaces(far), frontmost::frame(Surfaces(far), 400, 300));
+  EXPECT_GT(drawing.parts.size(), 20u);
+}
+
+TEST_F(CadFiles, IgesAndBrepHoldTheSamePlate) {
+  for (const char* name : {"plate.igs", "plate.brep"}) {
+    const Scene scene = load(file(name));
+    EXPECT_EQ(scene.source.format, name[6] == 'i' ? ModelFormat::iges : ModelFormat::brep);
+    EXPECT_EQ(scene.up, Axis::z);
+    EXPECT_NEAR(area_of(Surfaces(scene)), plate_area, 0.01 * plate_area) << name;
+    EXPECT_EQ(scene.meshes[0].edge_circles.size(), 10u) << name << ": a rim at either end of a hole, and of the fillet";
+    EXPECT_FALSE(scene.meshes[0].smooth_edges.empty()) << name << ": the fillet's borders";
+  }
+}
+
+TEST_F(CadFiles, BytesInMemoryAreRecognized) {
+  const std::string bytes = load_text(file("fixture.step"), 1 << 20);
+  EXPECT_EQ(load(std::as_bytes(std::span(bytes)), "memory").instances.size(), 3u);
+}
+
+TEST_F(CadFiles, EdgesAreSharpWhereTheSurfacesTurn) {
+  const Scene scene = load(file("plate.brep"));
+  const Mesh& mesh = scene.meshes[0];
+  // Sides of the box (12, less one rounded edge that becomes two lines and two arcs), and rims.
+  double sharp = 0;
+  for (const glm::uvec2& edge : mesh.sharp_edges)
+    sharp += glm::distance(mesh.positions[edge.x], mesh.positions[edge.y]);
+  const double box = 4 * (120 + 80 + 12) - 120 - 4 * 3, arcs = 2 * 3 * kPi / 2, rims = 8 * 2 * kPi * 6;
+  EXPECT_NEAR(sharp, box + arcs + rims, 0.005 * (box + arcs + rims));
+  double smooth = 0;
+  for (const glm::uvec2& edge : mesh.smooth_edges)
+    smooth += glm::distance(mesh.positions[edge.x], mesh.positions[edge.y]);
+  EXPECT_NEAR(smooth, 2 * 120 + 4 * 12, 0.01) << "along the fillet, and the seams of the holes";
+  for (const EdgeCircle& circle : mesh.edge_circles)
+    EXPECT_TRUE(std::abs(circle.radius - 6) < 1e-9 || std::abs(circle.radius - 3) < 1e-9) << circle.radius;
+}
+
+TEST_F(CadFiles, DrawingsHaveTheSharpEdgesAlone) {
+  const Scene scene = load(file("plate.brep"));
+  const Surfaces surfaces(scene);
+  // From above: the outline, the rims, and nothing along the fillet, whose edges are smooth.
+  const View view = frontmost::frame(surfaces, 1000, 1000, {.orthographic = true, .forward = glm::dvec3(0, 0, -1)});
+  const double unit = (view.projection.right - view.projection.left) / view.width;
+  double length = 0;
+  const Drawing drawing = draw_lines(surfaces, view);
+  for (const DrawnPart& part : drawing.parts)
+    if (part.hidden_by == 0) length += glm::distance(part.from, part.to) * unit;
+  EXPECT_NEAR(length, 2 * (120 + 80) + 4 * 2 * kPi * 6, 0.3);
+  // An angle that is asked for judges the edges of triangles instead.
+  const Drawing judged = draw_lines(surfaces, view, {.crease_angle = 0.01});
+  EXPECT_GT(judged.parts.size(), drawing.parts.size());
+  const Rounds rounds = find_rounds(surfaces);
+  const auto rims = std::count_if(rounds.rounds.begin(), rounds.rounds.end(), [](const Round& round) {
+    return round.kind == RoundKind::circle && round.radius == 6 && std::abs(round.turn - 2 * kPi) < 1e-6;
+  });
+  EXPECT_EQ(rims, 8) << "with the radius of the file, to the last bit";
+}
+
+TEST_F(CadFiles, TheToleranceIsKept) {
+  LoadOptions fine;
+  fine.import.tolerance = 0.001;
+  const Scene coarse_scene = load(file("plate.brep")), fine_scene = load(file("plate.brep"), fine);
+  EXPECT_GT(triangle_count(fine_scene), 2 * triangle_count(coarse_scene));
+  // Middles of rims' edges leave the circle by the tolerance at most.
+  for (const auto& [scene, most] :
+       {std::pair(&coarse_scene, 0.0005 * std::sqrt(120 * 120 + 80 * 80 + 12 * 12)), std::pair(&fine_scene, 0.001)}) {
+    const Mesh& mesh = scene->meshes[0];
+    for (const EdgeCircle& circle : mesh.edge_circles)
+      for (std::uint32_t i = circle.first; i < circle.first + circle.count; ++i) {
+        const glm::dvec3 middle =
+            (glm::dvec3(mesh.positions[mesh.sharp_edges[i].x]) + glm::dvec3(mesh.positions[mesh.sharp_edges[i].y])) *
+            0.5;
+        EXPECT_NEAR(glm::distance(middle, circle.centre), circle.radius, 1.1 * most);
+      }
+  }
+}
+
+TEST_F(CadFiles, MemoryIsLimited) {
+  LoadOptions small;
+  small.import.bytes = std::uint64_t(64) << 20;
+  EXPECT_THAT(error_of(file("fixture.step"), small), HasSubstr("fixture.step: could not be read: "));
+}
+
+/// Loads mutations of the fixture. \returns how many were read.
+int load_mutations(const std::string& original, std::uint64_t first, std::uint64_t count) {
+  const ScratchFolder folder;
+  LoadOptions options;
+  options.import = {.seconds = 60, .bytes = std::uint64_t(2) << 30};
+  int read = 0;
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    std::string bytes = original;
+    const int changes = 1 + random.below(8);
+    for (int i = 0; i < changes; ++i) {
+      const auto at = std::size_t(random.below(int(bytes.size())));
+      switch (random.below(4)) {
+        case 0: bytes[at] = char(random.below(256)); break;
+        case 1: bytes.erase(at, std::size_t(random.below(40))); break;
+        case 2:
+          bytes.insert(at, bytes.substr(std::size_t(random.below(int(bytes.size()))), std::size_t(random.below(60))));
+          break;
+        default:
+          // Numbers of entities and sizes are what readers trust.
+          if (const std::size_t digit = bytes.find_first_of("0123456789", at); digit != std::string::npos)
+            bytes[digit] = char('0' + random.below(10));
+      }
+    }
+    std::ofstream(folder.file("part.step"), std::ios::binary) << bytes;
+    try {
+      (void)load(folder.file("part.step"), options);
+      ++read;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("part.step: "));
+    }
+  }
+  return read;
+}
+
+TEST_F(CadFiles, BrokenFilesAreErrorsOrModels) {
+  const std::string original = load_text(file("fixture.step"), 1 << 20);
+  const int read = load_mutations(original, 1, seeds(24));
+  std::cout << read << " of " << seeds(24) << " broken files are read nevertheless\n";
+}
+
+TEST_F(CadFiles, TwoThousandBrokenFilesAreErrorsOrModels) {
+  const std::string original = load_text(file("fixture.step"), 1 << 20);
+  std::cout << load_mutations(original, 100, 2000) << " of 2000 broken files are read nevertheless\n";
+}
+
+TEST_F(CadFiles, CollectedFilesAreRead) {
+  FRONTMOST_NEEDS_MODELS();
+  struct Known {
+    const char* name;
+    std::size_t objects, least_triangles;
+  };
+  for (const Known& known :
+       {Known{"brep/as1-oc-214.stp", 18, 8000}, Known{"brep/CrankArm.brep", 2, 5000}, Known{"brep/screw.step", 1, 1000},
+        Known{"brep/bearing.iges", 1, 20000}, Known{"brep/surf114.igs", 4, 10000},
+        Known{"brep/linkrods.step", 1, 10000}, Known{"brep/Ventilator.stp", 1, 30000},
+        Known{"brep/face_recognition_sample_part.stp", 1, 500}}) {
+    SCOPED_TRACE(known.name);
+    const Scene scene = load(model(known.name));
+    EXPECT_EQ(scene.instances.size(), known.objects);
+    EXPECT_GT(triangle_count(scene), known.least_triangles);
+    EXPECT_FALSE(draw_lines(Surfaces(scene), frontmost::frame(Surfaces(scene), 200, 200)).parts.empty());
+  }
+}
+
+#endif
+
+}  // namespace
+}  // namespace frontmost::test

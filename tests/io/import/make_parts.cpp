@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes CAD files for tests, by OpenCASCADE, into the folder that it is given:
+//
+//   fixture.step        a plate with four holes and a rounded upper edge, 120 x 80 x 12 mm, and a pin in two of them
+//   fixture-inch.step   the same in inches
+//   plate.igs, plate.brep, plate-far.step (400 m from zero)
+#include <BRepAlgoAPI_Cut.hxx>
+#include <BRepFilletAPI_MakeFillet.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Tool.hxx>
+#include <IGESControl_Writer.hxx>
+#include <Interface_Static.hxx>
+#include <Quantity_Color.hxx>
+#include <STEPCAFControl_Writer.hxx>
+#include <STEPControl_Controller.hxx>
+#include <TDataStd_Name.hxx>
+#include <TDocStd_Document.hxx>
+#include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <XCAFDoc_ColorTool.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <gp_Ax2.hxx>
+#include <string>
+
+namespace {
+
+constexpr double kWidth = 120, kDepth = 80, kHeight = 12, kHole = 6, kFillet = 3;
+
+gp_Ax2 upright(double x, double y, double z) { return {gp_Pnt(x, y, z), gp_Dir(0, 0, 1)}; }
+
+TopoDS_Shape plate() {
+  TopoDS_Shape shape = BRepPrimAPI_MakeBox(kWidth, kDepth, kHeight).Shape();
+  // The upper edge at the front.
+  BRepFilletAPI_MakeFillet fillet(shape);
+  for (TopExp_Explorer edges(shape, TopAbs_EDGE); edges.More(); edges.Next()) {
+    const TopoDS_Edge edge = TopoDS::Edge(edges.Current());
+    const gp_Pnt a = BRep_Tool::Pnt(TopExp::FirstVertex(edge)), b = BRep_Tool::Pnt(TopExp::LastVertex(edge));
+    if (a.Y() == 0 && b.Y() == 0 && a.Z() == kHeight && b.Z() == kHeight) {
+      fillet.Add(kFillet, edge);
+      break;
+    }
+  }
+  shape = fillet.Shape();
+  for (const double x : {20.0, 100.0})
+    for (const double y : {20.0, 60.0})
+      shape = BRepAlgoAPI_Cut(shape, BRepPrimAPI_MakeCylinder(upright(x, y, -1), kHole, kHeight + 2).Shape()).Shape();
+  return shape;
+}
+
+Handle(TDocStd_Document) fixture() {
+  Handle(TDocStd_Document) document = new TDocStd_Document("BinXCAF");
+  XCAFDoc_DocumentTool::Set(document->Main());
+  Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  Handle(XCAFDoc_ColorTool) colors = XCAFDoc_DocumentTool::ColorTool(document->Main());
+  const TDF_Label base = shapes->AddShape(plate(), false);
+  const TDF_Label pin = shapes->AddShape(BRepPrimAPI_MakeCylinder(kHole, 30).Shape(), false);
+  const TDF_Label whole = shapes->NewShape();
+  TDataStd_Name::Set(base, "plate");
+  TDataStd_Name::Set(pin, "pin");
+  TDataStd_Name::Set(whole, "fixture");
+  colors->SetColor(base, Quantity_Color(1, 0, 0, Quantity_TOC_RGB), XCAFDoc_ColorSurf);
+  colors->SetColor(pin, Quantity_Color(0, 0, 1, Quantity_TOC_RGB), XCAFDoc_ColorSurf);
+  const auto place = [&](const TDF_Label& part, const gp_Vec& by, const char* name) {
+    gp_Trsf move;
+    move.SetTranslation(by);
+    TDataStd_Name::Set(shapes->AddComponent(whole, part, TopLoc_Location(move)), name);
+  };
+  place(base, gp_Vec(0, 0, 0), "base");
+  place(pin, gp_Vec(20, 20, 0), "pin left");
+  place(pin, gp_Vec(100, 60, 0), "pin right");
+  shapes->UpdateAssemblies();
+  return document;
+}
+
+bool write_step(const Handle(TDocStd_Document) & document, const std::string& path, const char* unit) {
+  STEPControl_Controller::Init();
+  Interface_Static::SetCVal("write.step.unit", unit);
+  STEPCAFControl_Writer writer;
+  writer.SetNameMode(true);
+  writer.SetColorMode(true);
+  return writer.Transfer(document) && writer.Write(path.c_str()) == IFSelect_RetDone;
+}
+
+Handle(TDocStd_Document) far_plate() {
+  Handle(TDocStd_Document) document = new TDocStd_Document("BinXCAF");
+  XCAFDoc_DocumentTool::Set(document->Main());
+  gp_Trsf move;
+  move.SetTranslation(gp_Vec(400000, 0, 0));
+  XCAFDoc_DocumentTool::ShapeTool(document->Main())->AddShape(plate().Moved(TopLoc_Location(move)), false);
+  return document;
+}
+
+}  // namespace
+
+int main(int, char** words) {
+  const std::string folder = std::string(words[1]) + "/";
+  bool is_written = write_step(fixture(), folder + "fixture.step", "MM");
+  is_written = is_written && write_step(fixture(), folder + "fixture-inch.step", "INCH");
+  is_written = is_written && write_step(far_plate(), folder + "plate-far.step", "MM");
+  IGESControl_Writer iges("MM", 0);
+  is_written = is_written && iges.AddShape(plate()) && iges.Write((folder + "plate.igs").c_str());
+  return is_written && BRepTools::Write(plate(), (folder + "plate.brep").c_str()) ? 0 : 1;
+}
