@@ -13,6 +13,6 @@ frontmost lines bracket.obj --up +z --views front,top,left,iso --hidden dashed -
 frontmost lines bracket.obj --up +z --view iso --camera-orthographic --plot --hidden dashed --hatch 1.5 --page 160,130 --margin 5 -o plot.svg -o plot.pdf
 frontmost lines builtin:gallery --style figure --hatch 1.2 --page 160,100 --margin 3 -o figure.svg -o figure.pdf
 if [ -x "$(dirname "$(command -v frontmost)")/frontmost-import" ]; then
-  frontmost lines "$here/cad/fixture.step" --views front,top,iso --dimensions holes --page a4-landscape \
+  frontmost lines "$here/cad/fixture.step" --views front,top,right,iso --dimensions all --page a3 \
     --title 'Drilling fixture' --number FM-0015 --author 'E. Example' --date 2026-03-01 -o fixture.svg -o fixture.pdf
 fi

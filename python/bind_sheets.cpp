@@ -20,7 +20,8 @@ FRONTMOST_WORDS(frontmost::Dimensioning, "dimensions",
                 {{frontmost::Dimensioning::none, "none"},
                  {frontmost::Dimensioning::overall, "overall"},
                  {frontmost::Dimensioning::diameters, "diameters"},
-                 {frontmost::Dimensioning::holes, "holes"}});
+                 {frontmost::Dimensioning::holes, "holes"},
+                 {frontmost::Dimensioning::all, "all"}});
 FRONTMOST_WORDS(frontmost::DrawingStyle, "style",
                 {{frontmost::DrawingStyle::technical, "technical"}, {frontmost::DrawingStyle::figure, "figure"}});
 FRONTMOST_WORDS(frontmost::ProjectionMethod, "projection",
@@ -96,7 +97,8 @@ std::optional<TitleBlock> title_of(const std::optional<std::map<std::string, std
 }
 
 HeldPage sheet_of(const std::shared_ptr<HeldSurfaces>& held, const py::object& views, const py::list& sections,
-                  ProjectionMethod projection, Dimensioning dimensions, HiddenLines hidden,
+                  const std::optional<std::vector<std::string>>& uncut, ProjectionMethod projection,
+                  Dimensioning dimensions, HiddenLines hidden,
                   const std::optional<std::vector<NamedView>>& hidden_views, DrawingStyle style,
                   const std::optional<double>& pen, const std::optional<double>& crease_angle,
                   const std::optional<double>& shortest_stroke, const std::optional<bool>& centre_lines, bool plot,
@@ -111,6 +113,7 @@ HeldPage sheet_of(const std::shared_ptr<HeldSurfaces>& held, const py::object& v
   const bool is_view = py::isinstance<View>(views);
   if (!is_view) options.views = py::cast<std::vector<NamedView>>(views);
   options.sections = sections_of(sections);
+  if (uncut) options.uncut = *uncut;
   options.projection = projection;
   options.dimensions = dimensions;
   options.hidden = hidden;
@@ -264,7 +267,7 @@ void bind_sheets(py::module_& m) {
       });
   py::class_<HeldSurfaces, std::shared_ptr<HeldSurfaces>>(m.attr("Surfaces"))
       .def("draw_sheet", &sheet_of, "views"_a = py::make_tuple("front", "top", "left"), py::kw_only(),
-           "sections"_a = py::list(), "projection"_a = ProjectionMethod::first_angle,
+           "sections"_a = py::list(), "uncut"_a = py::none(), "projection"_a = ProjectionMethod::first_angle,
            "dimensions"_a = Dimensioning::none, "hidden"_a = HiddenLines::none, "hidden_views"_a = py::none(),
            "style"_a = DrawingStyle::technical, "pen"_a = py::none(), "crease_angle"_a = py::none(),
            "shortest_stroke"_a = py::none(), "centre_lines"_a = py::none(), "plot"_a = false, "page"_a = py::none(),

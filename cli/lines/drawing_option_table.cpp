@@ -149,6 +149,16 @@ constexpr Option drawing_options[] = {
      "model behind a cutting plane, through the middle or at coordinate C. Cut faces are hatched, planes marked A-A, "
      "B-B.",
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.sections = sections_from(g.text); }},
+    {"uncut", 0, "WORD,WORD,...",
+     "Objects that --sections leave whole if the plane runs along their axis: those with one of these words in their "
+     "names, and shafts; none: cut all. By default bolt,screw,nut,washer,rivet,pin,dowel,shaft,axle,ball.",
+     Group::drawing, for_lines,
+     [](Settings& s, const Given& g) {
+       std::vector<std::string>& words = s.drawing.sheet.uncut;
+       words.clear();
+       if (g.text == "none") return;
+       for (const std::string_view word : split(g.text, ',')) words.emplace_back(word);
+     }},
     {"projection", 0, "first-angle|third-angle",
      "Arrangement of views around the front view. first-angle, the default: the top view lies below it. third-angle: "
      "above it.",
@@ -159,9 +169,10 @@ constexpr Option drawing_options[] = {
      "projection; yes by default with --views, unless --style figure is given.",
      Group::drawing, for_lines,
      [](Settings& s, const Given& g) { s.drawing.sheet.centre_lines = g.choice<int>() == 0; }},
-    {"dimensions", 0, "overall|diameters|holes",
+    {"dimensions", 0, "overall|diameters|holes|all",
      "Write dimensions on a sheet of --views, each once, in the --dimension-unit. overall: width, height and depth. "
-     "diameters: also those of circles. holes: also the positions of circles, from the lower left corner of the view.",
+     "diameters: also those of circles. holes: also the positions of circles, from the lower left corner of the view. "
+     "all: also the radii of fillets.",
      Group::drawing, for_lines,
      [](Settings& s, const Given& g) { s.drawing.sheet.dimensions = Dimensioning(1 + g.choice<int>()); }},
     {"plot", 0, "",

@@ -286,12 +286,14 @@ struct Section {
 //   cancel. Outlines that cross themselves are filled by triangles that may overlap.
 // - Ends closer than a hundred thousandth of the cut's size are joined: T-junctions leave such gaps.
 
-/// Cuts every object by the plane. The remains of a closed object are closed: triangles that lie exactly in the plane
+/// Cuts every object by the plane, but for the instances `whole`: those that it meets stay whole, and have no face. The
+/// remains of a closed object are closed: triangles that lie exactly in the plane
 /// fill the cut, and share their vertices with the cut triangles, to the bit. Normals, texture coordinates and colours
 /// of vertices are lost. Triangles with non-finite vertices are left out. O(triangles); the n vertices of a cut take n
 /// log n if the cut looks like one of a machine part, n * n for combs and mazes. (G. Meisters. Polygons Have Ears.
 /// 1975.) \throws Error bad_argument for a plane that is not finite as a float.
-[[nodiscard]] Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution& execution = {});
+[[nodiscard]] Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution& execution = {},
+                          std::span<const std::uint32_t> whole = {});
 
 /// \returns for each instance the number of the style, 0 to 5, that hatches the object in all of these sections; 0 also
 /// if the object is not cut. An object's style differs from those of earlier objects that it may touch, judged by boxes
@@ -334,6 +336,13 @@ struct Round {
   std::uint32_t first = 0, count = 0;  ///< range of Rounds::triangles
 };
 
+/// An arc of sharp edges, as at a fillet or a rounded corner.
+struct CircleArc {
+  glm::dvec3 centre{0}, axis{0, 0, 1};  ///< world space; the axis has unit length
+  double radius = 0, turn = 0;          ///< radians: the part of the circle that exists
+  glm::dvec3 middle{0};                 ///< the middle of the arc
+};
+
 struct Rounds {
   std::vector<Round> rounds;
   /// For each round, the triangles with an edge on its circle, or the triangles of its surface. Rounds come in order,
@@ -341,6 +350,7 @@ struct Rounds {
   std::vector<PrimitiveId> triangles;
   /// Cylinders of 7 to 17 sides with a sharp rim at either end. They count as polygons: nothing is drawn for them.
   std::vector<Round> prisms;
+  std::vector<CircleArc> arcs;  ///< circles of which 40 to 160 degrees exist
 };
 
 // The rules of find_rounds():

@@ -347,6 +347,7 @@ enum class Dimensioning : std::uint8_t {
   overall,    ///< width, height and depth
   diameters,  ///< diameters of circles and cylinders that are seen along their axes
   holes,      ///< positions of these, from the lower left corner of their view
+  all,        ///< radii of fillets and other arcs that are seen along their axes
 };
 
 /// Options of sheets. Millimetres are on paper.
@@ -356,6 +357,10 @@ struct SheetOptions {
   /// At most 24 sections, named A-A, B-B and so on in their order. The first view that sees a cutting plane edge-on
   /// marks the plane.
   std::vector<SectionView> sections{};
+  /// Objects that sections leave whole if the plane runs along their axis (ISO 128-44): those with one of these words,
+  /// or its plural, in their names, whatever its case; and, if there are any words, those that are shafts by their
+  /// shape.
+  std::vector<std::string> uncut{"bolt", "screw", "nut", "washer", "rivet", "pin", "dowel", "shaft", "axle", "ball"};
   ProjectionMethod projection = ProjectionMethod::first_angle;  ///< where views stand around the front view
   Dimensioning dimensions = Dimensioning::none;                 ///< needs views
 
@@ -421,7 +426,7 @@ struct Sheet {
   std::optional<double> scale;   ///< none in perspective
   std::vector<DrawnView> views;  ///< whole views, then sections, in their order
   bool is_empty = false;         ///< no line of the model is on the sheet
-  std::size_t left_out = 0;      ///< number of diameters and positions without room
+  std::size_t left_out = 0;      ///< number of diameters, radii and positions without room
   std::size_t undrawn = 0;       ///< number of diameters of cylinders seen along their axes, but hidden and not drawn
   std::size_t prisms = 0;        ///< number of diameters of cylinders of 7 to 17 sides, which count as polygons
 };

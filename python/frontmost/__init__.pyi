@@ -341,8 +341,8 @@ class Surfaces:
         Drawing.is_outline.
         """
     def draw_sheet(self, views: Sequence[Direction] | View = ("front", "top", "left"), *,
-                   sections: list[Direction | tuple[Direction, float]] = [],
-                   projection: Literal["none", "first_angle", "third_angle"] = "first_angle", dimensions: Literal["none", "overall", "diameters", "holes"] = "none",
+                   sections: list[Direction | tuple[Direction, float]] = [], uncut: Sequence[str] | None = None,
+                   projection: Literal["none", "first_angle", "third_angle"] = "first_angle", dimensions: Literal["none", "overall", "diameters", "holes", "all"] = "none",
                    hidden: Hidden = "none", hidden_views: list[Direction] | None = None,
                    style: Style = "technical", pen: float | None = None,
                    crease_angle: float | None = None, shortest_stroke: float | None = None,
@@ -355,8 +355,9 @@ class Surfaces:
                    progress: Progress = None) -> Sheet:
         """A drawing on paper: named views to scale, or one View, with hidden lines removed.
 
-        sections: directions, or (direction, place of the plane in the coordinates of the file). page: "a4", "a3-landscape",
-        ..., or (width, height). pen, margin, hatch, stipple, shortest_stroke: millimetres. scale: paper to model.
+        sections: directions, or (direction, place of the plane in the coordinates of the file). uncut: words in names of
+        objects that sections leave whole; None: fasteners, shafts and balls. page: "a4", "a3-landscape", ..., or (width,
+        height). pen, margin, hatch, stipple, shortest_stroke: millimetres. scale: paper to model.
         millimetres_per_unit: unit of the model's coordinates, in place of the file's. in_inches: unit of dimensions, by
         default True for models in inches. title_block: title, number, author, date, owner. hatch_angle, crease_angle:
         degrees. plot: strokes in an order for plotters.

@@ -365,6 +365,27 @@ TEST(Section, EveryObjectHasItsOwnFace) {
   validate(section.scene);
 }
 
+TEST(Section, WholeObjectsStayWholeWhereTheyAreMet) {
+  Scene scene;
+  scene.meshes = {box({0, 0, 0}, {2, 2, 2})};
+  scene.meshes[0].sharp_edges = {{0, 1}};
+  glm::dmat4 mirrored(1);
+  mirrored[0][0] = -1;
+  glm::dmat4 before(1);
+  before[3] = {0, 0, 50, 1};
+  scene.instances = {{"cut", 0, glm::dmat4(1)}, {"whole", 0, mirrored}, {"before", 0, before}};
+  const std::uint32_t whole[] = {1, 2};
+  const Section section = cut(Surfaces(scene), {Axis::z, 1.5}, {}, whole);
+  ASSERT_EQ(section.faces.size(), 1u);
+  EXPECT_EQ(section.faces[0].instance, 0u);
+  const Mesh& kept = section.scene.meshes[1];
+  EXPECT_NEAR(volume_of(kept), 8, 1e-6) << "turned outwards, although mirrored";
+  EXPECT_EQ(open_sides(kept), 0u);
+  EXPECT_EQ(kept.sharp_edges.size(), 1u);
+  EXPECT_TRUE(section.scene.meshes[2].triangles.empty()) << "the plane does not meet it";
+  validate(section.scene);
+}
+
 TEST(Section, OpenMeshesAndBrokenNumbersAreNoSolids) {
   Mesh sheet;
   add_triangle(sheet, {-1, 0, -1}, {1, 0, -1}, {0, 0, 1});

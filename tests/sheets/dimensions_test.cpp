@@ -233,6 +233,48 @@ TEST_F(DimensionsTest, EachLevelHasThoseBeforeIt) {
   EXPECT_EQ(all.layer.groups.at(1).points.size(), expected.points.size());
 }
 
+/// A slab 10 high whose four corners are rounded.
+void add_rounded_slab(Mesh& mesh, glm::vec2 size, double radius) {
+  std::vector<glm::vec2> outline;
+  for (int corner = 0; corner < 4; ++corner)
+    for (int i = 0; i <= 8; ++i) {
+      const double angle = std::numbers::pi / 2 * (corner + i / 8.0);
+      const glm::dvec2 centre(corner == 0 || corner == 3 ? size.x - radius : radius,
+                              corner < 2 ? size.y - radius : radius);
+      outline.emplace_back(centre + radius * glm::dvec2(std::cos(angle), std::sin(angle)));
+    }
+  const glm::vec2 middle = size / 2.0f;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::vec2 a = outline[i], b = outline[(i + 1) % outline.size()];
+    add_triangle(mesh, {a, 10}, {b, 10}, {middle, 10});
+    add_triangle(mesh, {b, 0}, {a, 0}, {middle, 0});
+    add_triangle(mesh, {a, 0}, {b, 0}, {b, 10});
+    add_triangle(mesh, {a, 0}, {b, 10}, {a, 10});
+  }
+}
+
+TEST_F(DimensionsTest, ArcsHaveRadii) {
+  Mesh mesh;
+  add_rounded_slab(mesh, {100, 60}, 7);
+  scene_ = scene_of(mesh);
+  draw({NamedView::front, NamedView::top});
+  EXPECT_EQ(rounds_.arcs.size(), 8u) << "four corners, above and below";
+  for (const CircleArc& arc : rounds_.arcs) {
+    EXPECT_NEAR(arc.radius, 7, 1e-4);
+    EXPECT_NEAR(arc.turn, std::numbers::pi / 2, 1e-4);
+    // The middle lies in the direction of the slab's corner.
+    const glm::dvec3 out = arc.middle - arc.centre;
+    EXPECT_NEAR(std::abs(out.x), 7 * std::sqrt(0.5), 1e-3);
+    EXPECT_NEAR(std::abs(out.y), 7 * std::sqrt(0.5), 1e-3);
+  }
+  EXPECT_EQ(dimensioned({.level = Dimensioning::holes}).count, 3u);
+  const Dimensions all = dimensioned({.level = Dimensioning::all});
+  EXPECT_EQ(all.count, 4u);
+  PageGroup expected;
+  for (const char* const number : {"100", "60", "10", "4\u00d7R7"}) add_text(expected, number, {0, 0});
+  EXPECT_EQ(all.layer.groups.at(1).points.size(), expected.points.size());
+}
+
 TEST_F(DimensionsTest, PositionsWithoutRoomAreCounted) {
   Mesh mesh;
   add_box(mesh, {100, 60, 10});

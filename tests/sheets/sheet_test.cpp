@@ -2,7 +2,9 @@
 // Whole sheets by one call: sizes computed by hand, reported facts, and refused calls.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 
 #include "frontmost/scene.h"
@@ -174,6 +176,65 @@ TEST_F(SheetOfBlock, PlanesMayCrossTheModel) {
   const Sheet nothing = drawn(options);
   EXPECT_TRUE(nothing.is_empty) << "the section lies behind the far plane";
   EXPECT_TRUE(nothing.page.layers.empty());
+}
+
+/// A peg along z about (20, 15), 4 thick, from z = 5 on; `bore`: the radius of a hole along it, or 0.
+Mesh upright_peg(float height, float bore) {
+  constexpr int sides = 36;
+  Mesh mesh;
+  const auto at = [&](float radius, int k, float z) {
+    const double angle = 2 * std::numbers::pi * (k % sides) / sides;
+    return glm::vec3(20 + radius * std::cos(angle), 15 + radius * std::sin(angle), z + 5);
+  };
+  const auto add_quad = [&](const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d) {
+    add_triangle(mesh, a, b, c);
+    add_triangle(mesh, a, c, d);
+  };
+  for (int i = 0; i < sides; ++i) {
+    add_quad(at(2, i, 0), at(2, i + 1, 0), at(2, i + 1, height), at(2, i, height));
+    add_quad(at(bore, i, height), at(2, i, height), at(2, i + 1, height), at(bore, i + 1, height));
+    add_quad(at(2, i, 0), at(bore, i, 0), at(bore, i + 1, 0), at(2, i + 1, 0));
+    if (bore > 0) add_quad(at(bore, i + 1, 0), at(bore, i, 0), at(bore, i, height), at(bore, i + 1, height));
+  }
+  return mesh;
+}
+
+/// The number of faces that a section from this side shows of a block and another object.
+std::size_t faces_of(Mesh other, const std::string& name, V direction,
+                     const std::vector<std::string>* uncut = nullptr) {
+  Scene scene = block();
+  other.name = name;
+  add(scene, std::move(other));
+  SheetOptions options{.sections = {{direction}}};
+  if (uncut != nullptr) options.uncut = *uncut;
+  return draw_sheet(Surfaces(scene), options).views.at(0).section->faces.size();
+}
+
+TEST(UncutObjects, AreFastenersAndShaftsAlongTheirAxis) {
+  const std::vector<std::string> none, others{"Stud"};
+  for (const char* const name : {"Bolt-2", "BOLTS", "hex bolt M6 (left)", "pin_1"}) {
+    EXPECT_EQ(faces_of(upright_peg(7, 0), name, V::front), 1u) << name;
+    EXPECT_EQ(faces_of(upright_peg(7, 0), name, V::top), 2u) << name << ", cut across";
+    EXPECT_EQ(faces_of(upright_peg(7, 0), name, V::front, &none), 2u) << name;
+  }
+  for (const char* const name : {"boltless", "spin", "part", ""})
+    EXPECT_EQ(faces_of(upright_peg(7, 0), name, V::front), 2u) << name << ", shorter than twice its thickness";
+  EXPECT_EQ(faces_of(upright_peg(7, 0), "studs 4", V::front, &others), 1u);
+  EXPECT_EQ(faces_of(upright_peg(30, 0), "part", V::front), 1u) << "a shaft by its shape";
+  EXPECT_EQ(faces_of(upright_peg(30, 1), "part", V::front), 2u) << "a tube";
+  EXPECT_EQ(faces_of(upright_peg(30, 1), "washer", V::front), 1u);
+  // An object without a cylinder has no axis.
+  for (const V direction : {V::front, V::top}) {
+    Mesh nut = block({30, 20, 15}).meshes[0];
+    EXPECT_EQ(faces_of(std::move(nut), "nut", direction), 1u);
+  }
+}
+
+TEST(UncutObjects, AreCutIfThePlaneMeetsNothingElse) {
+  Scene scene = scene_of(upright_peg(30, 0));
+  scene.instances[0].name = "shaft";
+  scene.up = Axis::z;
+  EXPECT_EQ(draw_sheet(Surfaces(scene), {.sections = {{V::front}}}).views.at(0).section->faces.size(), 1u);
 }
 
 TEST_F(SheetOfBlock, TheStepsAreTold) {

@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0 Ranks the cells of a torus so that, for any rank, the cells of lower rank are
-// spread evenly (R. Ulichney. The Void-and-Cluster Method for Dither Array Generation. 1993). A dot is repeatedly put
-// into the largest gap; the order of dots is their rank. So one table, made once for all threads, serves for every
-// darkness.
+// SPDX-License-Identifier: Apache-2.0
+// Ranks the cells of a torus so that, for any rank, the cells of lower rank are spread evenly (R. Ulichney. The
+// Void-and-Cluster Method for Dither Array Generation. 1993). A dot is repeatedly put into the largest gap; the order
+// of dots is their rank. So one table, made once for all threads, serves for every darkness.
 #include "hatching/dot_grid.h"
 
 #include <array>

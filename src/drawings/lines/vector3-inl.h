@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 Vectors of three coordinates, each of which is a vector of lanes. The kernels of
-// this room compute differences and products of such vectors, and normals with bounds on rounding errors.
+// SPDX-License-Identifier: Apache-2.0
+// Vectors of three coordinates, each of which is a vector of lanes. The kernels of this room compute differences and
+// products of such vectors, and normals with bounds on rounding errors.
 
 // This file is included once for every target.
 #if defined(FRONTMOST_LINES_VECTOR3_INL_H_) == defined(HWY_TARGET_TOGGLE)

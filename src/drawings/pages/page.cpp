@@ -1,7 +1,8 @@
-// SPDX-License-Identifier: Apache-2.0 Pages are validated here, so that their writers have no error paths. A page is
-// refused if a format could not write it: for numbers that are not finite or have too many digits, for lists of
-// different lengths, and for paths with missing points. The shapes of a figure become filled paths of a page, and each
-// of its blend groups becomes a group with an opacity.
+// SPDX-License-Identifier: Apache-2.0
+// Pages are validated here, so that their writers have no error paths. A page is refused if a format could not write
+// it: for numbers that are not finite or have too many digits, for lists of different lengths, and for paths with
+// missing points. The shapes of a figure become filled paths of a page, and each of its blend groups becomes a group
+// with an opacity.
 #include <cmath>
 #include <filesystem>
 #include <span>

@@ -1,8 +1,9 @@
-// SPDX-License-Identifier: Apache-2.0 Finds surfaces of revolution and prisms, and makes the public list of all rounds.
-// Rings with corners at equal angles have equal moments in all directions across their axis. So the axis passes through
-// the mean of the corners, in the direction whose second moment differs from the other two, which are equal. A prism
-// has two rims about one axis, each with its corners on a circle. Rims are sorted by the point of their axis nearest to
-// the origin, along a direction that is parallel to no usual row of holes.
+// SPDX-License-Identifier: Apache-2.0
+// Finds surfaces of revolution and prisms, and makes the public list of all rounds. Rings with corners at equal angles
+// have equal moments in all directions across their axis. So the axis passes through the mean of the corners, in the
+// direction whose second moment differs from the other two, which are equal. A prism has two rims about one axis, each
+// with its corners on a circle. Rims are sorted by the point of their axis nearest to the origin, along a direction
+// that is parallel to no usual row of holes.
 #include <algorithm>
 #include <numbers>
 
@@ -216,7 +217,7 @@ std::vector<Round> find_prisms(const SmoothMesh& mesh, const Execution& executio
   return found;
 }
 
-constexpr double kLeastTurn = 160 * std::numbers::pi / 180;
+constexpr double kLeastTurn = 160 * std::numbers::pi / 180, kLeastArc = 40 * std::numbers::pi / 180;
 
 /// Appends a round, unless too little of it exists.
 void append(const FoundRound& found, const WeldedMesh& mesh, Rounds& all) {
@@ -231,6 +232,18 @@ void append(const FoundRound& found, const WeldedMesh& mesh, Rounds& all) {
   all.triangles.insert(all.triangles.end(), ids.begin(), ids.end());
 }
 
+/// Appends a circle of which too little exists for a round, unless its arcs are all around.
+void append_arc(const FoundCircle& found, double turn, std::vector<CircleArc>& arcs) {
+  if (turn < kLeastArc || turn >= kLeastTurn) return;
+  const Circle3& circle = found.circle;
+  glm::dvec3 out(0);
+  for (const FoundCircle::Arc& arc : found.arcs) out += (arc.from + arc.to - 2.0 * circle.centre) * arc.turn;
+  const double length = glm::length(out);
+  // The sum for one arc is at least as long as that of two halves at its ends.
+  if (!(length >= turn * circle.radius * std::cos(kLeastTurn / 2))) return;
+  arcs.push_back({circle.centre, circle.axis, circle.radius, turn, circle.centre + out * (circle.radius / length)});
+}
+
 }  // namespace
 
 Rounds find_rounds(const Surfaces& surfaces, const Execution& execution) {
@@ -240,9 +253,10 @@ Rounds find_rounds(const Surfaces& surfaces, const Execution& execution) {
   const std::vector<FoundCircle> circles = find_circles(mesh, execution);
   for (const FoundCircle& found : circles) {
     const Circle3& circle = found.circle;
-    append({{RoundKind::circle, circle.centre, circle.centre, circle.axis, circle.radius, covered(found)},
-            found.triangles},
+    const double turn = covered(found);
+    append({{RoundKind::circle, circle.centre, circle.centre, circle.axis, circle.radius, turn}, found.triangles},
            mesh.mesh, all);
+    append_arc(found, turn, all.arcs);
   }
   for (const FoundRound& wall : find_walls(mesh, circles, execution)) append(wall, mesh.mesh, all);
   std::vector<bool> is_taken(mesh.mesh.triangles.size());

@@ -116,6 +116,20 @@ CutFace close(const std::vector<CutSegment>& segments, const PlaneAxes& plane, s
   return face;
 }
 
+/// The whole mesh in world space, without attributes.
+Mesh placed(const Mesh& mesh, const ToWorld& to_world, bool is_mirrored) {
+  Mesh all;
+  all.name = mesh.name;
+  for (const glm::vec3& p : mesh.positions) all.positions.push_back(to_world(p));
+  all.triangles = mesh.triangles;
+  if (is_mirrored)
+    for (glm::uvec3& t : all.triangles) std::swap(t.y, t.z);
+  all.material_ids = mesh.material_ids;
+  all.sharp_edges = mesh.sharp_edges;
+  all.smooth_edges = mesh.smooth_edges;
+  return all;
+}
+
 constexpr int style_count = 6;
 constexpr std::size_t most_compared = 2048;
 constexpr double spacings[] = {1, 0.7, 1.4};  // factors of the spacing, each used at two angles
@@ -142,27 +156,31 @@ struct PlacedFace {
 
 }  // namespace
 
-Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution& execution) {
+Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution& execution,
+            std::span<const std::uint32_t> whole) {
   if (!std::isfinite(float(plane.at)))
     throw Error(ErrorCode::bad_argument, "cut", "the plane's place must be finite, as a float");
   const IeeeScope ieee;
-  const Scene& whole = surfaces.scene();
+  const Scene& model = surfaces.scene();
   const PlaneAxes axes(plane);
   Section section;
   Scene& scene = section.scene;
-  scene.name = whole.name;
-  scene.up = whole.up;
-  scene.origin = whole.origin;
-  scene.cameras = whole.cameras;
-  scene.materials = whole.materials;
+  scene.name = model.name;
+  scene.up = model.up;
+  scene.origin = model.origin;
+  scene.cameras = model.cameras;
+  scene.materials = model.materials;
   for (Material& material : scene.materials)  // the face has no coordinates of textures
     for (TextureUse* const use : texture_uses_of(material)) *use = {};
-  for (std::uint32_t i = 0; i < whole.instances.size(); ++i) {
-    const Instance& instance = whole.instances[i];
-    const Mesh& mesh = whole.meshes[instance.mesh];
+  for (std::uint32_t i = 0; i < model.instances.size(); ++i) {
+    const Instance& instance = model.instances[i];
+    const Mesh& mesh = model.meshes[instance.mesh];
     ObjectCutter cutter{axes, mesh, surfaces.is_mirrored(i)};
     cutter.run(ToWorld(instance.world_from_mesh), execution);
-    if (!cutter.segments.empty()) {
+    const bool is_whole = std::find(whole.begin(), whole.end(), i) != whole.end();
+    if (is_whole && !cutter.segments.empty()) {
+      cutter.left = placed(mesh, ToWorld(instance.world_from_mesh), surfaces.is_mirrored(i));
+    } else if (!cutter.segments.empty()) {
       std::vector<Material>& materials = scene.materials;
       section.faces.push_back(close(cutter.segments, axes, std::uint32_t(materials.size()), cutter.left, execution));
       section.faces.back().instance = i;
@@ -173,7 +191,7 @@ Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution
     }
     scene.instances.push_back({instance.name, i, glm::dmat4(1)});
     scene.meshes.push_back(std::move(cutter.left));
-    report_progress(execution, "cut", double(i + 1) / double(whole.instances.size()));
+    report_progress(execution, "cut", double(i + 1) / double(model.instances.size()));
   }
   return section;
 }

@@ -173,7 +173,7 @@ void draw_lines_of(PlannedView& planned, const View& view, const Scene& scene, c
 }
 
 PlannedView draw_named(const Surfaces& surfaces, NamedView direction, const SectionView* section,
-                       const SheetOptions& options, const Execution& execution) {
+                       std::span<const UncutObject> uncut, const SheetOptions& options, const Execution& execution) {
   View view = frame(surfaces, fine_grid.x, fine_grid.y,
                     {.direction = direction, .orthographic = true, .objects = FramedObjects::all});
   ClipDistances& planes = view.projection.clip;
@@ -187,7 +187,7 @@ PlannedView draw_named(const Surfaces& surfaces, NamedView direction, const Sect
   result.direction = direction;
   result.shows_hidden = !section && shows_hidden(options, direction);
   result.surfaces = surfaces_for(surfaces, view, options, execution);
-  if (section) cut_surfaces(result, *section, view, execution);
+  if (section) cut_surfaces(result, *section, uncut, view, execution);
   draw_lines_of(result, view, surfaces.scene(), options, execution);
   return result;
 }
@@ -197,12 +197,15 @@ std::vector<PlannedView> draw_named_views(const Surfaces& surfaces, const SheetO
                                           const Execution& execution) {
   std::vector<PlannedView> views;
   for (const NamedView direction : options.views) {
-    PlannedView& view = views.emplace_back(draw_named(surfaces, direction, nullptr, options, execution));
+    PlannedView& view = views.emplace_back(draw_named(surfaces, direction, nullptr, {}, options, execution));
     view.name = view.placed.name = view_name(direction);
   }
+  std::vector<UncutObject> uncut;
+  if (!options.sections.empty()) uncut = uncut_objects(surfaces, options.uncut, execution);
   for (std::size_t i = 0; i < options.sections.size(); ++i) {
     const SectionView& section = options.sections[i];
-    PlannedView& view = views.emplace_back(draw_named(surfaces, section.direction, &section, options, execution));
+    PlannedView& view =
+        views.emplace_back(draw_named(surfaces, section.direction, &section, uncut, options, execution));
     view.letter = clear_letters[i];
     view.name = view.placed.name = view.letter + "-" + view.letter;
   }

@@ -31,9 +31,21 @@ struct PlannedView : DrawnView {
 [[nodiscard]] std::shared_ptr<const Surfaces> surfaces_of(std::shared_ptr<const Scene> scene,
                                                           const Execution& execution);
 
-/// Cuts the surfaces of a view: sets its section and plane, and its surfaces to those behind the plane.
-/// \throws Error bad_argument if the plane misses them.
-void cut_surfaces(PlannedView& view, const SectionView& wanted, const View& camera, const Execution& execution);
+/// An object that sections leave whole if their planes run along its axis.
+struct UncutObject {
+  std::uint32_t instance;
+  std::optional<glm::dvec3> axis;  ///< none: whatever the plane, as for a ball
+};
+
+/// The objects that SheetOptions::uncut names, and shafts: objects without bores that lie in their thickest cylinder
+/// and are at least twice as long as thick. O(triangles log triangles).
+[[nodiscard]] std::vector<UncutObject> uncut_objects(const Surfaces& surfaces, std::span<const std::string> words,
+                                                     const Execution& execution);
+
+/// Cuts the surfaces of a view, but for `uncut` objects, unless these alone are cut: sets its section and plane, and
+/// its surfaces to those behind the plane. \throws Error bad_argument if the plane misses them.
+void cut_surfaces(PlannedView& view, const SectionView& wanted, std::span<const UncutObject> uncut, const View& camera,
+                  const Execution& execution);
 
 /// Leaves a section in the cell of its direction if no other view has that cell; otherwise gives the section a column
 /// of its own.

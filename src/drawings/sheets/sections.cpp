@@ -70,6 +70,49 @@ constexpr double arrow_place = 6;                    // millimetres beyond the c
 constexpr double arrow_length = 8, head_length = 4;  // millimetres
 constexpr double letter_distance = 1;                // millimetres from the arrow's tail
 
+constexpr double along_plane = 0.05;    // the sine of the greatest angle between an axis and a plane along it
+constexpr double least_shaft = 2;       // length of a shaft, as a multiple of its diameter
+constexpr double around_shaft = 1.001;  // how far a shaft may reach out of its thickest cylinder
+constexpr double whole_turn = 6.2;      // radians
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; }
+
+/// Whether one of the words, or its plural, stands in the text between characters that are no letters.
+bool has_word(const std::string& text, std::span<const std::string> words) {
+  std::string word;
+  for (std::size_t i = 0; i <= text.size(); ++i) {
+    const char c = i < text.size() ? lower(text[i]) : ' ';
+    if (c >= 'a' && c <= 'z') {
+      word += c;
+      continue;
+    }
+    const auto is_same = [&](std::string wanted) {
+      std::transform(wanted.begin(), wanted.end(), wanted.begin(), lower);
+      return !wanted.empty() && (word == wanted || word == wanted + "s");
+    };
+    if (std::any_of(words.begin(), words.end(), is_same)) return true;
+    word.clear();
+  }
+  return false;
+}
+
+/// Whether all of an object lies in the cylinder, prolonged at both ends, and is long enough for a shaft.
+bool fits_shaft(const Surfaces& surfaces, std::uint32_t instance, const Round& cylinder) {
+  if (cylinder.turn < whole_turn) return false;
+  const std::uint32_t count =
+      std::uint32_t(surfaces.scene().meshes[surfaces.scene().instances[instance].mesh].triangles.size());
+  double low = 0, high = 0;
+  for (PrimitiveId id = surfaces.first_primitive(instance); id < surfaces.first_primitive(instance) + count; ++id)
+    for (const glm::vec3& corner : surfaces.corners(id)) {
+      const glm::dvec3 out = glm::dvec3(corner) - cylinder.from;
+      const double along = glm::dot(out, cylinder.axis);
+      if (!(glm::length(out - along * cylinder.axis) <= around_shaft * cylinder.radius)) return false;
+      low = std::min(low, along);
+      high = std::max(high, along);
+    }
+  return high - low >= least_shaft * 2 * cylinder.radius;
+}
+
 }  // namespace
 
 std::shared_ptr<const Surfaces> surfaces_of(std::shared_ptr<const Scene> scene, const Execution& execution) {
@@ -81,7 +124,34 @@ std::shared_ptr<const Surfaces> surfaces_of(std::shared_ptr<const Scene> scene, 
   return {owner, &owner->surfaces};
 }
 
-void cut_surfaces(PlannedView& view, const SectionView& wanted, const View& camera, const Execution& execution) {
+std::vector<UncutObject> uncut_objects(const Surfaces& surfaces, std::span<const std::string> words,
+                                       const Execution& execution) {
+  std::vector<UncutObject> uncut;
+  if (words.empty()) return uncut;
+  const Scene& scene = surfaces.scene();
+  const Rounds rounds = find_rounds(surfaces, execution);
+  struct Cylinders {
+    const Round* thickest = nullptr;
+    bool has_bore = false;
+  };
+  std::vector<Cylinders> cylinders(scene.instances.size());
+  for (const Round& round : rounds.rounds) {
+    if (round.kind != RoundKind::cylinder || round.count == 0) continue;
+    Cylinders& own = cylinders[surfaces.source(rounds.triangles[round.first]).instance];
+    own.has_bore |= round.is_hollow;
+    if (!round.is_hollow && (own.thickest == nullptr || round.radius > own.thickest->radius)) own.thickest = &round;
+  }
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const Round* const thickest = cylinders[i].thickest;
+    const bool is_shaft = thickest != nullptr && !cylinders[i].has_bore && fits_shaft(surfaces, i, *thickest);
+    if (!is_shaft && !has_word(scene.instances[i].name, words)) continue;
+    uncut.push_back({i, thickest != nullptr ? std::optional(thickest->axis) : std::nullopt});
+  }
+  return uncut;
+}
+
+void cut_surfaces(PlannedView& view, const SectionView& wanted, std::span<const UncutObject> uncut, const View& camera,
+                  const Execution& execution) {
   const glm::dvec3 towards = -camera.forward();
   int axis = 0;  // the one that is nearest to this direction
   for (int k = 1; k < 3; ++k)
@@ -90,7 +160,12 @@ void cut_surfaces(PlannedView& view, const SectionView& wanted, const View& came
   const Box& box = view.surfaces->bounds();
   const double origin = view.surfaces->scene().origin[axis], low = box.low[axis], high = box.high[axis];
   view.plane.at = wanted.at ? *wanted.at - origin : (low + high) / 2;
-  view.section = std::make_shared<const Section>(cut(*view.surfaces, view.plane, execution));
+  std::vector<std::uint32_t> whole;
+  for (const UncutObject& object : uncut)
+    if (!object.axis || std::abs((*object.axis)[axis]) < along_plane) whole.push_back(object.instance);
+  view.section = std::make_shared<const Section>(cut(*view.surfaces, view.plane, execution, whole));
+  if (view.section->faces.empty() && !whole.empty())
+    view.section = std::make_shared<const Section>(cut(*view.surfaces, view.plane, execution));
   if (view.section->faces.empty()) {
     if (!(low <= high)) refuse_section(wanted, "the model has no surface to cut");
     refuse_section(wanted, "the plane misses the model, which lies from " + std::string(1, "xyz"[axis]) + " = " +

@@ -31,6 +31,7 @@ constexpr double least_drawn = 0.2;           // share of a round that must be d
 constexpr double nearly_whole = 6.2;          // radians
 constexpr double widest_sagitta = 0.016;      // as a share of the radius, for sides of 20 degrees
 constexpr double same_place_on_paper = 0.02;  // millimetres of paper
+constexpr std::size_t most_arcs = 256;        // per view
 
 /// A circle of the scene as it appears in a view.
 struct SeenCircle {
@@ -45,8 +46,8 @@ struct Extent {
   const Round* diameter = nullptr;  ///< set if both ends belong to one cylinder
 };
 
-bool is_seen_along(const Round& round, const View& camera) {
-  return glm::length(glm::cross(round.axis, camera.forward())) <= square;
+bool is_seen_along(const glm::dvec3& axis, const View& camera) {
+  return glm::length(glm::cross(axis, camera.forward())) <= square;
 }
 
 /// Whether enough of the round is drawn, by its drawn length in pixels.
@@ -55,10 +56,17 @@ bool is_drawn(const Round& round, double length, const View& camera) {
   return length >= least_drawn * round.turn * round.radius * camera.width / (p.right - p.left);
 }
 
+/// An arc of the scene as it appears in a view.
+struct SeenArc {
+  const CircleArc* arc;
+  glm::dvec2 middle, out;  ///< on the page; `out` points away from the centre and has unit length
+};
+
 struct MeasuredView {
   PageBox box;                        ///< the box of all drawn lines
   std::vector<SeenCircle> circles;    ///< seen along their axes, and drawn to at least a fifth
   std::vector<const Round*> undrawn;  ///< cylinders that are seen along their axes, but drawn less
+  std::vector<SeenArc> arcs;          ///< seen along their axes, and drawn in their middle
   std::vector<const Round*> prisms;   ///< those of Rounds::prisms that are seen along their axes
 
   explicit MeasuredView(const DimensionedView& view) : view_(view) {
@@ -70,16 +78,23 @@ struct MeasuredView {
     box = {view.sheet->on_page(drawn.low), view.sheet->on_page(drawn.high)};
     if (view.rounds == nullptr) return;
     for (const Round& prism : view.rounds->prisms)
-      if (is_seen_along(prism, camera)) prisms.push_back(&prism);
+      if (is_seen_along(prism.axis, camera)) prisms.push_back(&prism);
     const std::vector<double> lengths = drawn_lengths(*view.rounds, *view.drawing, view.with_hidden);
     for (std::size_t i = 0; i < lengths.size(); ++i) {
       const Round& round = view.rounds->rounds[i];
       if (round.kind == RoundKind::revolved) continue;  // its largest circle is no edge
-      if (!is_seen_along(round, camera)) continue;
+      if (!is_seen_along(round.axis, camera)) continue;
       if (is_drawn(round, lengths[i], camera))
         circles.push_back({&round, on_page(round.from), round.radius * millimetres_});
       else if (round.kind == RoundKind::cylinder)
         undrawn.push_back(&round);
+    }
+    for (const CircleArc& arc : view.rounds->arcs) {
+      if (arcs.size() == most_arcs) break;
+      if (!is_seen_along(arc.axis, camera)) continue;
+      const glm::dvec2 middle = on_page(arc.middle), out = middle - on_page(arc.centre);
+      const double near = same_place_on_paper + widest_sagitta * arc.radius * millimetres_;
+      if (is_drawn_near(middle, near)) arcs.push_back({&arc, middle, out / glm::length(out)});
     }
   }
 
@@ -142,6 +157,17 @@ struct MeasuredView {
   }
 
  private:
+  /// Whether a drawn line passes within `near` of a place on the page.
+  [[nodiscard]] bool is_drawn_near(const glm::dvec2& place, double near) const {
+    return std::any_of(view_.drawing->parts.begin(), view_.drawing->parts.end(), [&](const DrawnPart& part) {
+      if (part.hidden_by != 0 && !view_.with_hidden) return false;
+      const glm::dvec2 from = view_.sheet->on_page(part.from), along = view_.sheet->on_page(part.to) - from;
+      const double length = glm::dot(along, along);
+      const double t = length > 0 ? std::clamp(glm::dot(place - from, along) / length, 0.0, 1.0) : 0;
+      return glm::distance(place, from + along * t) <= near;
+    });
+  }
+
   const DimensionedView& view_;
   double millimetres_ = 1;  ///< millimetres of paper per unit of the scene
 };
@@ -250,7 +276,7 @@ bool is_rim(const SeenCircle& circle, const std::vector<SeenCircle>& all) {
 
 const std::string diameter_sign = "\u2300";
 
-/// Places the diameters of a sheet, each once.
+/// Places the diameters and radii of a sheet, each once.
 struct Diameters {
   /// Marks a cylinder and its continuations as dimensioned. \returns false if the cylinder was marked before.
   bool take(const Round& round) {
@@ -261,16 +287,21 @@ struct Diameters {
     return is_new;
   }
 
+  /// A place from which a leader may start, and its direction.
+  struct Anchor {
+    glm::dvec2 tip, out;
+  };
   struct Group {
     std::string text;
     std::vector<SeenCircle> circles;  ///< at different places
+    std::vector<Anchor> anchors{};
+    std::size_t count = 0;  ///< of circles or arcs
   };
 
-  /// Writes the diameters of a view.
+  /// Writes the diameters, or radii, of a view.
   void add(const std::vector<Group>& groups, Dimensions& all) {
     for (const Group& group : groups) {
-      const std::size_t count = group.circles.size();
-      const std::string text = count > 1 ? std::to_string(count) + "\u00d7" + group.text : group.text;
+      const std::string text = group.count > 1 ? std::to_string(group.count) + "\u00d7" + group.text : group.text;
       std::optional<Leader> leader;
       if (placed < most_diameters) leader = best_leader(group, text);
       if (!leader) {
@@ -326,6 +357,10 @@ struct Diameters {
       });
       if (!is_there) group->circles.push_back(circle);
     }
+    for (Group& group : groups) {
+      group.anchors = anchors_of(group.circles);
+      group.count = group.circles.size();
+    }
     // The largest circles come first, because they have the longest leaders around inner circles.
     std::stable_sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) {
       return a.circles[0].round->radius > b.circles[0].round->radius;
@@ -333,28 +368,59 @@ struct Diameters {
     return groups;
   }
 
-  [[nodiscard]] std::optional<Leader> best_leader(const Group& group, std::string_view text) const {
+  /// The arcs that this view shows and no earlier view has shown, by their radii.
+  [[nodiscard]] std::vector<Group> radii_of(const MeasuredView& view) {
+    std::vector<Group> groups;
+    std::vector<double> radii;
+    for (const SeenArc& seen : view.arcs) {
+      const CircleArc& arc = *seen.arc;
+      if (!take({RoundKind::circle, arc.centre, arc.centre, arc.axis, arc.radius, arc.turn})) continue;
+      const auto known = std::find_if(radii.begin(), radii.end(), [&](double radius) {
+        return std::abs(radius - arc.radius) <= same_radius * std::max(radius, arc.radius);
+      });
+      const auto number = std::size_t(known - radii.begin());
+      if (known == radii.end()) {
+        radii.push_back(arc.radius);
+        groups.push_back({"R" + dimension_text(arc.radius * options.numbers_per_unit, options.decimals), {}});
+      }
+      Group& group = groups[number];
+      ++group.count;
+      if (group.count > most_tried) continue;
+      // From outside of the curve, or across its centre.
+      group.anchors.push_back({seen.middle, seen.out});
+      group.anchors.push_back({seen.middle, -seen.out});
+    }
+    return groups;
+  }
+
+  /// The leaders that circles may have.
+  static std::vector<Anchor> anchors_of(const std::vector<SeenCircle>& circles) {
     constexpr int degrees[] = {45, 135, 315, 225, 60, 120, 300, 240, 30, 150, 330, 210};
-    std::optional<Leader> best;
-    const double shelf = pen.width_of(text) + 2 * text_distance;
-    for (std::size_t i = 0; i < std::min(group.circles.size(), most_tried); ++i) {
-      const SeenCircle& circle = group.circles[i];
+    std::vector<Anchor> anchors;
+    for (std::size_t i = 0; i < std::min(circles.size(), most_tried); ++i)
       for (const int angle : degrees) {
         const double radians = angle * std::numbers::pi / 180;
         const glm::dvec2 out(std::cos(radians), -std::sin(radians));
-        const glm::dvec2 tip = circle.centre + circle.radius * out;
-        const double side = out.x > 0 ? 1 : -1;
-        int crossed = obstacles.crossings({tip + 0.1 * out, tip + nearest_knee * out});
-        for (double way = nearest_knee; way <= farthest_knee; way += knee_step) {
-          const double cost = way + cost_of_crossing * crossed;
-          if (crossed > most_crossed || (best && cost >= best->cost)) break;
-          const glm::dvec2 knee = tip + way * out, end = knee + glm::dvec2(side * shelf, 0);
-          const TextAlign align = side > 0 ? TextAlign::left : TextAlign::right;
-          PageBox box = pen.box_of(text, knee + glm::dvec2(side * text_distance, 0), align);
-          box.high.y += 2 * text_distance;  // the shelf, and room below it
-          if (obstacles.is_free(box)) best = Leader{tip, knee, end, align, cost};
-          crossed += obstacles.crossings({knee, knee + knee_step * out});
-        }
+        anchors.push_back({circles[i].centre + circles[i].radius * out, out});
+      }
+    return anchors;
+  }
+
+  [[nodiscard]] std::optional<Leader> best_leader(const Group& group, std::string_view text) const {
+    std::optional<Leader> best;
+    const double shelf = pen.width_of(text) + 2 * text_distance;
+    for (const auto& [tip, out] : group.anchors) {
+      const double side = out.x > 0 ? 1 : -1;
+      int crossed = obstacles.crossings({tip + 0.1 * out, tip + nearest_knee * out});
+      for (double way = nearest_knee; way <= farthest_knee; way += knee_step) {
+        const double cost = way + cost_of_crossing * crossed;
+        if (crossed > most_crossed || (best && cost >= best->cost)) break;
+        const glm::dvec2 knee = tip + way * out, end = knee + glm::dvec2(side * shelf, 0);
+        const TextAlign align = side > 0 ? TextAlign::left : TextAlign::right;
+        PageBox box = pen.box_of(text, knee + glm::dvec2(side * text_distance, 0), align);
+        box.high.y += 2 * text_distance;  // the shelf, and room below it
+        if (obstacles.is_free(box)) best = Leader{tip, knee, end, align, cost};
+        crossed += obstacles.crossings({knee, knee + knee_step * out});
       }
     }
     return best;
@@ -500,7 +566,7 @@ bool shows_holes(const DimensionedView& view) {
   const std::vector<double> lengths = drawn_lengths(*view.rounds, *view.drawing, view.with_hidden);
   for (std::size_t i = 0; i < lengths.size(); ++i) {
     const Round& round = view.rounds->rounds[i];
-    if (round.kind != RoundKind::revolved && round.turn >= least_turn && is_seen_along(round, camera) &&
+    if (round.kind != RoundKind::revolved && round.turn >= least_turn && is_seen_along(round.axis, camera) &&
         is_drawn(round, lengths[i], camera))
       return true;
   }
@@ -555,6 +621,8 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
           draw_positions(pen, measured[i], views[i].taken, axis, extent, groups[i], options, all);
     }
     for (const std::vector<Diameters::Group>& of_view : groups) diameters.add(of_view, all);
+    for (std::size_t i = 0; i < views.size() && options.level >= Dimensioning::all; ++i)
+      if (views[i].is_dimensioned) diameters.add(diameters.radii_of(measured[i]), all);
     for (std::size_t i = 0; i < views.size(); ++i)
       if (views[i].is_dimensioned) diameters.count_missing(measured[i], all);
   }

@@ -50,7 +50,7 @@ struct OverallSizes {
 struct Dimensions {
   PageLayer layer{"7 dimensions"};  ///< one group of lines and one of texts, both without names
   std::size_t count = 0;            ///< number of dimensions on the page
-  std::size_t left_out = 0;         ///< diameters and positions without room
+  std::size_t left_out = 0;         ///< diameters, radii and positions without room
   std::size_t undrawn = 0;          ///< diameters of cylinders that are seen along their axes, but not drawn
   std::size_t prisms = 0;           ///< diameters of cylinders of fewer than 18 sides, which count as polygons
 };
