@@ -218,6 +218,7 @@ std::vector<Round> find_prisms(const SmoothMesh& mesh, const Execution& executio
 }
 
 constexpr double kLeastTurn = 160 * std::numbers::pi / 180, kLeastArc = 40 * std::numbers::pi / 180;
+constexpr double kOneArc = 0.9;  // pieces apart from each other add up to less than this share of one arc
 
 /// Appends a round, unless too little of it exists.
 void append(const FoundRound& found, const WeldedMesh& mesh, Rounds& all) {
@@ -237,10 +238,11 @@ void append_arc(const FoundCircle& found, double turn, std::vector<CircleArc>& a
   if (turn < kLeastArc || turn >= kLeastTurn) return;
   const Circle3& circle = found.circle;
   glm::dvec3 out(0);
-  for (const FoundCircle::Arc& arc : found.arcs) out += (arc.from + arc.to - 2.0 * circle.centre) * arc.turn;
+  // The integral of the directions of an arc, so that pieces add up to the whole.
+  for (const FoundCircle::Arc& arc : found.arcs)
+    out += (arc.from + arc.to - 2.0 * circle.centre) * std::tan(std::min(arc.turn, kLeastTurn) / 2);
   const double length = glm::length(out);
-  // The sum for one arc is at least as long as that of two halves at its ends.
-  if (!(length >= turn * circle.radius * std::cos(kLeastTurn / 2))) return;
+  if (!(length >= kOneArc * 2 * circle.radius * std::sin(turn / 2))) return;
   arcs.push_back({circle.centre, circle.axis, circle.radius, turn, circle.centre + out * (circle.radius / length)});
 }
 
