@@ -28,6 +28,7 @@
 #include <TDataStd_Name.hxx>
 #include <TDocStd_Document.hxx>
 #include <TopExp.hxx>
+#include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedDataMapOfShapeListOfShape.hxx>
 #include <TopoDS.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
@@ -178,11 +179,15 @@ class PartMaker {
     part_.name = std::move(name);
     const TopoDS_Shape shape = faces.ExploredShape();
     for (; faces.More(); faces.Next()) add(faces);
+    for (TopExp_Explorer all(shape, TopAbs_FACE); all.More(); all.Next())
+      bare_faces += !first_of_face_.IsBound(all.Current());
     TopTools_IndexedDataMapOfShapeListOfShape edges;
     TopExp::MapShapesAndUniqueAncestors(shape, TopAbs_EDGE, TopAbs_FACE, edges);
     for (int i = 1; i <= edges.Extent(); ++i) add_edge(TopoDS::Edge(edges.FindKey(i)), edges(i));
     return std::move(part_);
   }
+
+  std::size_t bare_faces = 0;  ///< faces that OpenCASCADE could not divide into triangles
 
  private:
   void add(const RWMesh_FaceIterator& face) {
@@ -320,6 +325,7 @@ void take_parts(const Document& document, const Tessellation& wanted, Answer& an
     std::uint32_t part;
   };
   std::map<std::string, std::vector<Made>> made;  // by label
+  std::size_t bare_faces = 0;
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     answer.progress(kReadShare + kTransferShare +
                     (1 - kReadShare - kTransferShare) * double(i) / double(leaves.size()));
@@ -338,6 +344,7 @@ void take_parts(const Document& document, const Tessellation& wanted, Answer& an
                                            ? RWMesh_FaceIterator(shape, leaf.Style)
                                            : RWMesh_FaceIterator(leaf.RefLabel, TopLoc_Location(), true, leaf.Style),
                                        name_of(leaf.RefLabel)));
+      bare_faces += maker.bare_faces;
     }
     // A part may hold nothing but points and curves.
     if (model.parts[found->part].faces.empty()) continue;
@@ -346,6 +353,8 @@ void take_parts(const Document& document, const Tessellation& wanted, Answer& an
                             matrix_of(leaf.Location.Transformation(), 1 / document.millimetres)});
   }
   if (model.placed.empty()) throw Unreadable("the file has no faces");
+  if (bare_faces > 0)
+    answer.warning(std::to_string(bare_faces) + " faces are left out, because OpenCASCADE finds no triangles for them");
 }
 
 }  // namespace
