@@ -31,10 +31,11 @@ Array<T> written(const std::vector<Thing>& things, const ArrayShape& row, const 
 
 HeldDrawing drawn(const std::shared_ptr<HeldSurfaces>& held, const View& view,
                   const std::optional<double>& crease_angle, bool counts_hidden, const std::vector<std::string>& kinds,
-                  bool outlines, int threads, const py::object& progress) {
+                  bool ripples, bool outlines, int threads, const py::object& progress) {
   LineOptions options;
   if (crease_angle) options.crease_angle = glm::radians(*crease_angle);
   options.counts_hidden = counts_hidden;
+  options.ripples = ripples;
   options.outlines = outlines;
   bool* const wanted[] = {&options.boundaries, &options.silhouettes, &options.borders, &options.creases,
                           &options.intersections};
@@ -134,7 +135,7 @@ void bind_lines(py::module_& m) {
   m.attr("edge_kinds") = kinds;
   py::class_<HeldSurfaces, std::shared_ptr<HeldSurfaces>>(m.attr("Surfaces"))
       .def("draw_lines", &drawn, "view"_a, py::kw_only(), "crease_angle"_a = py::none(), "counts_hidden"_a = false,
-           "kinds"_a = kinds, "outlines"_a = false, "threads"_a = 0, "progress"_a = py::none(),
+           "kinds"_a = kinds, "ripples"_a = true, "outlines"_a = false, "threads"_a = 0, "progress"_a = py::none(),
            doc("Surfaces.draw_lines"));
 }
 

@@ -34,13 +34,17 @@ struct LineOptions {
   /// are coplanar. None: an edge is a crease if it bends by at least 18 degrees more than half of what each surface
   /// bends by at its next edge; 12 degrees suffice if both surfaces bend evenly and by at most half as much as the
   /// edge, 9 degrees if a crease continues along the edge. Triangles at more than 34 degrees always form a crease,
-  /// those at less than 15 never. A crease of one or two edges that ends in the air is dropped, unless it is longer
-  /// than a twentieth of the scene's diagonal.
+  /// those at less than 15 never. A crease of one or two edges that ends in the air is dropped, and one of up to nine
+  /// that does so at both ends, unless it is longer than a twentieth of the scene's diagonal.
   std::optional<double> crease_angle = std::nullopt;
   /// True: DrawnPart::hidden_by counts surfaces. False: hidden_by is 0 or 1, which takes less time.
   bool counts_hidden = false;
   /// The kinds of edges that are found. Leaving out intersections saves a third to a half of the time.
   bool boundaries = true, silhouettes = true, borders = true, creases = true, intersections = true;
+  /// False: silhouettes of ripples are left out. Where a smooth surface is seen nearly edge-on, single triangles of it
+  /// face away from the eye; at their edges the surface bends by less than 34 degrees, and beside them the same surface
+  /// is seen, within two rings of triangles. Takes about half a microsecond for each silhouette.
+  bool ripples = true;
   bool outlines = false;  ///< true: finds DrawnPart::is_outline
 };
 

@@ -332,12 +332,13 @@ class Surfaces:
         are kept. Raises Error limit_exceeded beyond 2^28 fragments and 1,024 for each triangle, 2^30 in all.
         """
     def draw_lines(self, view: View, *, crease_angle: float | None = None, counts_hidden: bool = False,
-                   kinds: Sequence[EdgeKind] = ..., outlines: bool = False, threads: int = 0,
+                   kinds: Sequence[EdgeKind] = ..., ripples: bool = True, outlines: bool = False, threads: int = 0,
                    progress: Progress = None) -> Drawing:
         """The feature edges, each cut exactly into seen and hidden parts.
 
         crease_angle: degrees between normals from which an edge is a crease; None decides by the surfaces on both sides.
-        counts_hidden: Drawing.hidden_by counts surfaces, else it is 0 or 1. kinds: wanted edge_kinds. outlines: finds
+        counts_hidden: Drawing.hidden_by counts surfaces, else it is 0 or 1. kinds: wanted edge_kinds. ripples:
+        silhouettes of single triangles are kept where a smooth surface is seen nearly edge-on. outlines: finds
         Drawing.is_outline.
         """
     def draw_sheet(self, views: Sequence[Direction] | View = ("front", "top", "left"), *,

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
 
 #include "frontmost/lines.h"
 #include "support/tessellations.h"
@@ -233,29 +236,6 @@ TEST(Creases, SliversDrawNoTicksOnSmoothWalls) {
   }
 }
 
-/// A grid from 0 to 1 in x and y of n x n squares, bent by `height`; vertices move by up to `noise` times a square's
-/// edge.
-Mesh bent(int n, float noise, const std::function<float(float)>& height) {
-  Random random(11);
-  std::vector<glm::vec3> places;
-  for (int y = 0; y <= n; ++y)
-    for (int x = 0; x <= n; ++x) {
-      const float u = float(x) / float(n), v = float(y) / float(n);
-      const glm::vec3 moved = random.point(noise / float(n));
-      places.push_back(glm::vec3(u, v, height(u)) + moved);
-    }
-  Mesh mesh;
-  const auto corner = [&](int x, int y) { return places[std::size_t(y * (n + 1) + x)]; };
-  for (int y = 0; y < n; ++y)
-    for (int x = 0; x < n; ++x) {
-      const bool is_rising = random.below(2) == 0;
-      const glm::vec3 a = corner(x, y), b = corner(x + 1, y), c = corner(x + 1, y + 1), d = corner(x, y + 1);
-      add_triangle(mesh, a, b, is_rising ? c : d);
-      add_triangle(mesh, is_rising ? a : b, c, d);
-    }
-  return mesh;
-}
-
 std::size_t count_along_ridge(const std::vector<DrawnEdge>& edges, double reach) {
   return std::size_t(std::count_if(edges.begin(), edges.end(), [&](const DrawnEdge& edge) {
     return edge.kind == EdgeKind::crease && std::abs(edge.from.x - 0.5) < reach && std::abs(edge.to.x - 0.5) < reach;
@@ -301,6 +281,48 @@ Mesh noisy_cube(int n, float noise) {
           add_triangle(mesh, corner(0, 0), corner(1, 1), corner(0, 1));
         }
   return mesh;
+}
+
+/// For every line without sharp bends that ends in the air at both ends: its number of edges and its length.
+std::vector<std::pair<std::size_t, double>> lone_lines_of(const std::vector<DrawnEdge>& edges) {
+  using Place = std::array<double, 3>;
+  const auto place = [](const glm::dvec3& p) { return Place{p.x, p.y, p.z}; };
+  std::map<Place, std::vector<std::size_t>> at;
+  for (std::size_t i = 0; i < edges.size(); ++i)
+    for (const glm::dvec3& end : {edges[i].from, edges[i].to}) at[place(end)].push_back(i);
+  std::vector<std::pair<std::size_t, double>> lines;
+  for (const auto& [tip, beside] : at) {
+    if (beside.size() != 1) continue;
+    std::size_t edge = beside[0], count = 0;
+    double length = 0;
+    glm::dvec3 before(0);
+    for (Place here = tip;;) {
+      glm::dvec3 from = edges[edge].from, to = edges[edge].to;
+      if (place(from) != here) std::swap(from, to);
+      const glm::dvec3 along = glm::normalize(to - from);
+      if (count > 0 && glm::dot(before, along) < 0.25) break;
+      before = along;
+      here = place(to);
+      length += glm::distance(from, to);
+      ++count;
+      const std::vector<std::size_t>& next = at[here];
+      if (next.size() == 1) lines.emplace_back(count, length);
+      if (next.size() != 2) break;
+      edge = next[0] == edge ? next[1] : next[0];
+    }
+  }
+  return lines;
+}
+
+TEST(Creases, ThatEndInTheAirAtBothEndsAreLong) {
+  std::size_t count = 0;
+  for (const float noise : {0.12f, 0.16f, 0.2f}) {
+    const std::vector<DrawnEdge> edges = creases_of(bent(100, noise, [](float) { return 0.0f; }));
+    count += edges.size() - 400;  // the plate's sides
+    for (const auto& [edge_count, length] : lone_lines_of(edges))
+      EXPECT_TRUE(edge_count >= 10 || length > 0.05 * std::sqrt(2.0)) << noise << ' ' << edge_count << ' ' << length;
+  }
+  EXPECT_GT(count, 100u) << "a test of nothing";
 }
 
 TEST(Creases, OfANoisyBoxAreItsTwelveEdges) {

@@ -74,4 +74,27 @@ inline std::vector<double> uneven_angles(int count, float ratio, std::uint64_t s
   return angles;
 }
 
+/// A grid from 0 to 1 in x and y of n x n squares, bent by `height`; vertices move by up to `noise` times a square's
+/// edge.
+inline Mesh bent(int n, float noise, const std::function<float(float)>& height) {
+  Random random(11);
+  std::vector<glm::vec3> places;
+  for (int y = 0; y <= n; ++y)
+    for (int x = 0; x <= n; ++x) {
+      const float u = float(x) / float(n), v = float(y) / float(n);
+      const glm::vec3 moved = random.point(noise / float(n));
+      places.push_back(glm::vec3(u, v, height(u)) + moved);
+    }
+  Mesh mesh;
+  const auto corner = [&](int x, int y) { return places[std::size_t(y * (n + 1) + x)]; };
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      const bool is_rising = random.below(2) == 0;
+      const glm::vec3 a = corner(x, y), b = corner(x + 1, y), c = corner(x + 1, y + 1), d = corner(x, y + 1);
+      add_triangle(mesh, a, b, is_rising ? c : d);
+      add_triangle(mesh, is_rising ? a : b, c, d);
+    }
+  return mesh;
+}
+
 }  // namespace frontmost::test

@@ -165,7 +165,8 @@ bool shows_hidden(const SheetOptions& options, NamedView direction) {
 /// Draws the lines of a view whose surfaces are known, of a model in this scene.
 void draw_lines_of(PlannedView& planned, const View& view, const Scene& scene, const SheetOptions& options,
                    const Execution& execution) {
-  const LineOptions wanted{.crease_angle = options.crease_angle, .outlines = options.style == DrawingStyle::figure};
+  const LineOptions wanted{
+      .crease_angle = options.crease_angle, .ripples = false, .outlines = options.style == DrawingStyle::figure};
   planned.drawing = draw_lines(*planned.surfaces, view, wanted, execution);
   const Projection& p = view.projection;
   if (p.orthographic)

@@ -389,8 +389,9 @@ constexpr std::size_t kEdgesPerPart = 256;
 constexpr double kGoesOn = 0.5;     // the least cosine of the angle between a crease and its continuation
 constexpr double kBend = 0.25;      // the least cosine between two edges that count as one line
 constexpr double kFaintest = 0.75;  // share of a triangle's greatest jump below which its faintest crease is removed
-constexpr std::size_t kFewestEdges = 3;  // a line of so many edges may end in the air
-constexpr double kLong = 0.05;           // share of the mesh's diagonal: a longer line may end in the air
+constexpr std::size_t kFewestEdges = 3;   // a line of so many edges may end in the air
+constexpr std::size_t kFewestAlone = 10;  // a line of so many edges may end in the air at both ends
+constexpr double kLong = 0.05;            // share of the mesh's diagonal: a longer line may end in the air
 
 /// Folds need judgement, except sharp edges that the mesh states.
 bool needs_judgement(const FeatureEdge& edge, const WeldedMesh& mesh) {
@@ -475,18 +476,23 @@ class CreaseGraph {
       if (drawn_at(v) == 1) tips.push_back(v);
     }
     const double least = kLong * glm::distance(low, high);
-    for (std::size_t i = 0; i < tips.size(); ++i) {
-      if (i % kEdgesPerPart == 0) check_cancelled(execution_);
-      if (drawn_at(tips[i]) != 1) continue;
-      const std::vector<std::uint32_t> line = line_from(tips[i]);
-      double length = 0;
-      for (const std::uint32_t edge : line)
-        length += glm::distance(mesh_.positions[edges_[edge].from], mesh_.positions[edges_[edge].to]);
-      if (line.empty() || line.size() >= kFewestEdges || length > least) continue;
-      for (const std::uint32_t edge : line) folds_[edge].grade = FoldGrade::smooth;
-      // An edge that met the removed line may end in the air now.
-      for (const std::uint32_t vertex : {edges_[line.back()].from, edges_[line.back()].to})
-        if (drawn_at(vertex) == 1) tips.push_back(vertex);
+    // Without the lines that met it, a line may end in the air, or go on.
+    for (std::size_t removed = tips.size(); removed > 0;) {
+      removed = 0;
+      for (std::size_t i = 0; i < tips.size(); ++i) {
+        if (i % kEdgesPerPart == 0) check_cancelled(execution_);
+        if (drawn_at(tips[i]) != 1) continue;
+        const std::vector<std::uint32_t> line = line_from(tips[i]);
+        double length = 0;
+        for (const std::uint32_t edge : line)
+          length += glm::distance(mesh_.positions[edges_[edge].from], mesh_.positions[edges_[edge].to]);
+        if (line.empty() || line.size() >= kFewestAlone || length > least) continue;
+        const std::uint32_t end = end_of(line, tips[i]);
+        if (line.size() >= kFewestEdges && drawn_at(end) != 1) continue;
+        for (const std::uint32_t edge : line) folds_[edge].grade = FoldGrade::smooth;
+        ++removed;
+        if (drawn_at(end) == 1) tips.push_back(end);
+      }
     }
   }
 
@@ -510,10 +516,10 @@ class CreaseGraph {
   }
 
   /// The edges of the line that begins at `tip`, a vertex with one drawn edge. The line ends where other edges meet it,
-  /// where it bends sharply, or after kFewestEdges edges.
+  /// where it bends sharply, or after kFewestAlone edges.
   [[nodiscard]] std::vector<std::uint32_t> line_from(std::uint32_t tip) const {
     std::vector<std::uint32_t> line;
-    for (std::uint32_t vertex = tip; line.size() < kFewestEdges;) {
+    for (std::uint32_t vertex = tip; line.size() < kFewestAlone;) {
       std::uint32_t next = no_index;
       for (const std::uint32_t edge : edges_at_[vertex])
         if (is_drawn(edge) && (line.empty() || edge != line.back())) next = edge;
@@ -524,6 +530,11 @@ class CreaseGraph {
       if (drawn_at(vertex) != 2) break;
     }
     return line;
+  }
+
+  [[nodiscard]] std::uint32_t end_of(const std::vector<std::uint32_t>& line, std::uint32_t vertex) const {
+    for (const std::uint32_t edge : line) vertex = other_end(edge, vertex);
+    return vertex;
   }
 
   const WeldedMesh& mesh_;

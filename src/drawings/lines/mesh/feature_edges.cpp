@@ -55,6 +55,9 @@ struct Classifier {
   [[nodiscard]] std::optional<EdgeKind> kind_of(const SidePair& pair) const {
     const int a = side_of(pair.first), b = side_of(pair.second);
     if (options.silhouettes && (a * b > 0 || (a == 0) != (b == 0))) return EdgeKind::silhouette;
+    return kind_in_every_view(pair);
+  }
+  [[nodiscard]] std::optional<EdgeKind> kind_in_every_view(const SidePair& pair) const {
     if (has_borders && !(surface_of(pair.first.triangle) == surface_of(pair.second.triangle))) return EdgeKind::border;
     if (options.creases && is_crease(pair.first, pair.second)) return EdgeKind::crease;
     return std::nullopt;
@@ -389,6 +392,26 @@ void add_features(std::uint32_t v, std::span<const Corner> corners, const Classi
   }
 }
 
+/// Silhouettes of ripples get the kind that they would have in other views; without one, they are removed.
+void judge_ripples(const SeenMesh& seen, const CornerTable& table, const Classifier& classifier,
+                   std::vector<FeatureEdge>& edges, const Execution& execution) {
+  const std::vector<std::uint8_t> is_ripple = find_ripples(seen, table, edges, execution);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    FeatureEdge edge = edges[i];
+    if (is_ripple[i]) {
+      const auto side = [&](std::uint32_t triangle, bool is_forward) {
+        return Side{edge.to, triangle, third_of(seen.mesh.triangles[triangle], edge.from, edge.to), is_forward};
+      };
+      const auto kind = classifier.kind_in_every_view({side(edge.left, true), side(edge.right, false)});
+      if (!kind) continue;
+      edge.kind = *kind;
+    }
+    edges[kept++] = edge;
+  }
+  edges.resize(kept);
+}
+
 }  // namespace
 
 std::optional<std::vector<SidePair>> paired_sides(std::span<const Side> sides, const SurfaceOfTriangle& surface_of) {
@@ -452,6 +475,7 @@ Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const Lin
   });
   Features all{joined(edges, execution), {}, joined(twins, execution), std::move(is_spread)};
   std::sort(all.twins.begin(), all.twins.end());
+  if (options.silhouettes && !options.ripples) judge_ripples(seen, table, classifier, all.edges, execution);
   if (options.creases && !options.crease_angle) judge_creases(seen, table, all.edges, execution);
   if (options.boundaries)
     all.continued = leave_out_gaps(seen, classifier, kWidestGap * double(surfaces.bounds().diagonal()),

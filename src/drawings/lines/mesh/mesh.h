@@ -66,6 +66,7 @@ struct SeenTriangle {
 /// A mesh and the properties of its triangles in a view.
 struct SeenMesh {
   const WeldedMesh& mesh;
+  Sight sight;
   Buffer<std::int8_t> facing;  ///< Sight::facing()
   Buffer<SeenTriangle> triangles;
 };

@@ -225,7 +225,7 @@ int side_of_eye(const WeldedMesh& mesh, std::size_t triangle, const Sight& sight
 
 SeenMesh see(const WeldedMesh& mesh, const Sight& sight, const Execution& execution) {
   const std::size_t count = mesh.triangles.size();
-  SeenMesh seen{mesh, Buffer<std::int8_t>(count), Buffer<SeenTriangle>(count)};
+  SeenMesh seen{mesh, sight, Buffer<std::int8_t>(count), Buffer<SeenTriangle>(count)};
   const auto see_triangles = kernel_for(SeeKernels, execution.isa);
   parallel_for(execution, count, kTrianglesPerPart, [&](std::size_t begin, std::size_t end) {
     see_triangles(mesh, sight, begin, end, seen.triangles.data());
