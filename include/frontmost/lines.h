@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -103,6 +104,27 @@ struct Drawing {
 /// than 2^20 segments of intersections plus 16 per triangle, 2^21 parts plus 4 per edge, or about 20 s of work.
 [[nodiscard]] Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions& options = {},
                                  const Execution& execution = {});
+
+/// Draws lines of the same surfaces in one view after another. What does not depend on the view is kept: shared
+/// vertices, the triangles at each of them, intersections. Each further view of a machine takes two thirds of the time.
+/// Memory: 100 bytes a triangle. Not for several threads at once.
+class LineDrawer {
+ public:
+  /// Borrows the surfaces, which must not change.
+  explicit LineDrawer(const Surfaces& surfaces);
+  ~LineDrawer();
+  LineDrawer(LineDrawer&&) noexcept;
+  LineDrawer& operator=(LineDrawer&&) noexcept;
+  LineDrawer(const LineDrawer&) = delete;
+  LineDrawer& operator=(const LineDrawer&) = delete;
+
+  /// The same drawing, to the bit, as draw_lines(). \throws Error as draw_lines() does.
+  [[nodiscard]] Drawing draw(const View& view, const LineOptions& options = {}, const Execution& execution = {});
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 // Strokes: the parts of a drawing joined into long lines, as a pen draws them.
 //

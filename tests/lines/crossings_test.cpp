@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Intersections of triangles, compared with a test of all pairs.
-#include "lines/crossings/crossings.h"
+
+#include "support/crossings.h"
 
 #include <gtest/gtest.h>
 
@@ -54,7 +55,7 @@ TEST(Crossings, EqualThoseOfAllPairs) {
     const Scene scene = scene_of(random_mesh(seed % 2 == 0 ? Kind::soup : Kind::slivers, 120, seed));
     const WeldedMesh mesh = weld(Surfaces(scene), {});
     std::map<std::pair<std::uint32_t, std::uint32_t>, double> lengths;
-    for (const Crossing& c : find_crossings(mesh, {}, {}))
+    for (const Crossing& c : crossings_of(mesh, {}, {}))
       lengths[{c.left, c.right}] = glm::length(c.to.place - c.from.place);
     found += lengths.size();
     for (std::uint32_t a = 0; a < mesh.triangles.size(); ++a)
@@ -89,7 +90,7 @@ TEST(Crossings, OfTwoBallsAreOneClosedLine) {
   scene.meshes.push_back(ball({0.7f, 0.31f, 0.23f}, 0.8f, 31));
   scene.instances.push_back({"other", 1, glm::dmat4(1.0)});
   for (const int threads : {1, 3}) {
-    const std::vector<Crossing> crossings = find_crossings(weld(Surfaces(scene), {}), {}, {.threads = threads});
+    const std::vector<Crossing> crossings = crossings_of(weld(Surfaces(scene), {}), {}, {.threads = threads});
     std::map<std::array<double, 3>, int> ends;
     for (const Crossing& c : crossings)
       for (const CrossingEnd* end : {&c.from, &c.to}) ++ends[{end->place.x, end->place.y, end->place.z}];
@@ -107,7 +108,7 @@ TEST(Crossings, NeighboursTouchesAndTwinsGiveNone) {
   add_triangle(mesh, {0.5f, 0.5f, 0}, {1, 0.5f, 0}, {0.5f, 0.5f, -1});  // stands on it with an edge
   add_triangle(mesh, {3, 3, -1}, {3, 3, 1}, {4, 3, 0});
   const Scene scene = scene_of(mesh);
-  EXPECT_TRUE(find_crossings(weld(Surfaces(scene), {}), {}, {}).empty());
+  EXPECT_TRUE(crossings_of(weld(Surfaces(scene), {}), {}, {}).empty());
 }
 
 TEST(Crossings, ATwinAddsNothing) {
@@ -116,7 +117,7 @@ TEST(Crossings, ATwinAddsNothing) {
   add_triangle(mesh, {0, 0, -1}, {0, 0, 1}, {1, 0, 0.5f});
   add_triangle(mesh, {0, 0, -1}, {0, 0, 1}, {1, 0, 0.5f});
   const Scene scene = scene_of(mesh);
-  const std::vector<Crossing> crossings = find_crossings(weld(Surfaces(scene), {}), {}, {});
+  const std::vector<Crossing> crossings = crossings_of(weld(Surfaces(scene), {}), {}, {});
   ASSERT_EQ(crossings.size(), 1u);
   EXPECT_EQ(crossings[0].from.place, glm::dvec3(0));
   EXPECT_NEAR(crossings[0].to.place.x, 2.0 / 3, 1e-15);
@@ -127,7 +128,7 @@ TEST(Crossings, FromASharedCornerOn) {
   add_triangle(mesh, {0, 0, 0}, {4, 0, 0}, {0, 4, 0});
   add_triangle(mesh, {0, 0, 0}, {1, 1, 1}, {1, 1, -1});
   const Scene scene = scene_of(mesh);
-  const std::vector<Crossing> crossings = find_crossings(weld(Surfaces(scene), {}), {}, {});
+  const std::vector<Crossing> crossings = crossings_of(weld(Surfaces(scene), {}), {}, {});
   ASSERT_EQ(crossings.size(), 1u);
   EXPECT_EQ(crossings[0].from.place, glm::dvec3(0));
   EXPECT_EQ(crossings[0].to.place, glm::dvec3(1, 1, 0));
@@ -147,7 +148,7 @@ TEST(Crossings, OfATriangleWithoutEndAndManySmallOnes) {
     const Scene scene = scene_of(mesh);
     const WeldedMesh welded = weld(Surfaces(scene), {});
     for (const Isa isa : available_isas()) {
-      const std::vector<Crossing> crossings = find_crossings(welded, {}, {.threads = 2, .isa = isa});
+      const std::vector<Crossing> crossings = crossings_of(welded, {}, {.threads = 2, .isa = isa});
       ASSERT_EQ(crossings.size(), std::size_t(count)) << name(isa);
       for (const Crossing& c : crossings) {
         EXPECT_EQ(c.right, std::uint32_t(count));
@@ -161,9 +162,9 @@ TEST(Crossings, EveryInstructionSetFindsTheSame) {
   for (std::uint64_t seed = 0; seed < seeds(8); ++seed) {
     const Scene scene = scene_of(random_mesh(Kind::soup, 700, seed));
     const WeldedMesh mesh = weld(Surfaces(scene), {});
-    const std::vector<Crossing> expected = find_crossings(mesh, {}, {});
+    const std::vector<Crossing> expected = crossings_of(mesh, {}, {});
     for (const Isa isa : available_isas()) {
-      const std::vector<Crossing> crossings = find_crossings(mesh, {}, {.threads = 2, .isa = isa});
+      const std::vector<Crossing> crossings = crossings_of(mesh, {}, {.threads = 2, .isa = isa});
       ASSERT_EQ(crossings.size(), expected.size()) << name(isa);
       for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_EQ(crossings[i].to.place, expected[i].to.place);
     }

@@ -2,7 +2,7 @@
 // Surfaces that intersect exactly along edges and diagonals: the line is drawn once.
 #include <gtest/gtest.h>
 
-#include "lines/crossings/crossings.h"
+#include "support/crossings.h"
 #include "support/meshes.h"
 
 namespace frontmost::test {
@@ -147,7 +147,7 @@ TEST(EdgeContacts, OnOnePlaneLieAlongBothEdges) {
       return (b.x - a.x) * (p.y - a.y) == (b.y - a.y) * (p.x - a.x);
     };
     const Scene scene = scene_of(mesh);
-    for (const Crossing& c : find_crossings(weld(Surfaces(scene), {}), {}, {})) {
+    for (const Crossing& c : crossings_of(weld(Surfaces(scene), {}), {}, {})) {
       if (c.from.place.z != 0 || c.to.place.z != 0) continue;
       ++found;
       for (const std::size_t edge : {0u, 1u})
@@ -179,7 +179,7 @@ TEST(EdgeContacts, StretchesOfAFoldAreNone) {
   for (std::size_t i = 0; i + 1 < fold.size(); ++i) add_triangle(mesh, top, fold[i], fold[i + 1]);
   for (std::size_t i = fold.size() - 1; i > 0; --i) add_triangle(mesh, fold[i], fold[i - 1], bottom);
   const Scene scene = scene_of(mesh);
-  EXPECT_TRUE(find_crossings(weld(Surfaces(scene), {}), {}, {}).empty());
+  EXPECT_TRUE(crossings_of(weld(Surfaces(scene), {}), {}, {}).empty());
 }
 
 }  // namespace

@@ -82,6 +82,12 @@ TEST(Lines, TellProgressAndStopWhenAsked) {
 }
 
 void expect_same(const Drawing& one, const Drawing& other) {
+  ASSERT_EQ(one.edges.size(), other.edges.size());
+  for (std::size_t i = 0; i < one.edges.size(); ++i) {
+    ASSERT_EQ(one.edges[i].from, other.edges[i].from);
+    ASSERT_EQ(one.edges[i].to, other.edges[i].to);
+    ASSERT_EQ(one.edges[i].kind, other.edges[i].kind);
+  }
   ASSERT_EQ(one.parts.size(), other.parts.size());
   for (std::size_t i = 0; i < one.parts.size(); ++i) {
     ASSERT_EQ(one.parts[i].edge, other.parts[i].edge);
@@ -101,6 +107,29 @@ TEST(Lines, ThreadsChangeNothing) {
 }
 
 /// Enough triangles for several parts of every step; some cover many cells and lie in every part.
+TEST(Lines, OfOneViewAfterAnotherAreThoseOfEachAlone) {
+  for (const Kind kind : {Kind::sheets, Kind::coplanar, Kind::soup}) {
+    Mesh mesh = random_mesh(kind, kind == Kind::sheets ? 30 : 150, 4);
+    // A seam with a T-junction, which a triangle without area fills.
+    const glm::vec3 a(0, 0, 0), b(1, 0, 0), middle(0.5f, 0, 0), above(0.5f, 0.7f, 0), below(0.5f, -0.7f, 0);
+    add_triangle(mesh, a, b, above);
+    add_triangle(mesh, a, middle, b);
+    add_triangle(mesh, a, below, middle);
+    add_triangle(mesh, middle, below, b);
+    const Scene scene = scene_of(mesh);
+    const Surfaces surfaces(scene);
+    LineDrawer drawer(surfaces);
+    Random random(17);
+    for (int i = 0; i < 6; ++i) {
+      const View view = random_view(random, 160, 120);
+      const LineOptions options{.counts_hidden = i % 2 == 0, .intersections = i % 3 != 0, .ripples = i > 2};
+      expect_same(draw_lines(surfaces, view, options), drawer.draw(view, options));
+    }
+    EXPECT_THROW((void)drawer.draw(View(), {}), Error);
+    EXPECT_THROW((void)drawer.draw(random_view(random, 16, 16), {.crease_angle = -1}), Error);
+  }
+}
+
 TEST(Lines, PartsOfManyTrianglesAreOneGrid) {
   Random random(7);
   Mesh mesh;

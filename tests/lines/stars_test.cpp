@@ -4,8 +4,8 @@
 
 #include <numbers>
 
-#include "lines/crossings/crossings.h"
 #include "lines/mesh/mesh.h"
+#include "support/crossings.h"
 #include "support/effort.h"
 #include "support/random_scene.h"
 
@@ -26,7 +26,7 @@ struct Found {
         view(frame(surfaces, 64, 64)),
         mesh(weld(surfaces, execution)),
         seen(see(mesh, Sight(view), execution)),
-        features(find_features(seen, surfaces, {}, execution)) {}
+        features(find_features(seen, corner_table(seen.mesh, {}), surfaces, {}, execution)) {}
 };
 
 /// A fan of triangles around the origin, over all points of `rim`.
@@ -130,10 +130,10 @@ TEST(Stars, SpareNoCrossing) {
     SCOPED_TRACE(seed);
     const Scene scene = scene_of(crumpled(12, 2 + int(seed % 4), seed));
     Found found(scene);
-    const std::vector<Crossing> some = find_crossings(found.mesh, found.features, {});
+    const std::vector<Crossing> some = crossings_of(found.mesh, found.features, {});
     spread += std::size_t(std::count(found.features.is_spread.begin(), found.features.is_spread.end(), 1));
     found.features.is_spread = {};
-    const std::vector<Crossing> all = find_crossings(found.mesh, found.features, {});
+    const std::vector<Crossing> all = crossings_of(found.mesh, found.features, {});
     crossings += all.size();
     ASSERT_EQ(some.size(), all.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -161,7 +161,8 @@ TEST(Stars, OfAnySizeHaveTheirCreases) {
     const SeenMesh seen = see(welded, Sight(view), {});
     for (const double angle : {0.5, 1.8, 2.0}) {  // normals differ by 1.91
       const LineOptions options{.crease_angle = angle, .silhouettes = false};
-      EXPECT_EQ(find_features(seen, surfaces, options, {}).edges.size(), angle < 1.91 ? 6u : 0u)
+      EXPECT_EQ(find_features(seen, corner_table(seen.mesh, {}), surfaces, options, {}).edges.size(),
+                angle < 1.91 ? 6u : 0u)
           << size << " " << angle;
     }
   }

@@ -319,7 +319,9 @@ struct TonedScene {
       : surfaces(its_surfaces),
         to_light(light_of(tone, view)),
         mesh(weld(surfaces, execution)),
-        twins(find_features(see(mesh, Sight(view), execution), surfaces, no_edges, execution).twins),
+        twins(find_features(see(mesh, Sight(view), execution), corner_table(mesh, execution), surfaces, no_edges,
+                            execution)
+                  .twins),
         eye(mesh, twins, view, execution),
         normals(eye.seen, surfaces, tone.crease_angle, execution) {
     if (!tone.casts_shadows) return;

@@ -122,26 +122,48 @@ Error with_place(const Error& error, const OccluderGrid& grid, const WeldedMesh&
               std::to_string(surfaces.source(id).instance) + "; leave out faces that lie there many times"};
 }
 
-/// The properties of the mesh's triangles, after closing the mesh's seams.
-SeenMesh see_closed(WeldedMesh& mesh, const Sight& sight, const Execution& execution) {
-  SeenMesh seen = see(mesh, sight, execution);
-  if (!close_seams(mesh, seen.facing, execution)) return seen;
-  return see(mesh, sight, execution);
-}
-
 }  // namespace
 
-Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions& options, const Execution& execution) {
+struct LineDrawer::State {
+  explicit State(const Surfaces& its_surfaces) : surfaces(its_surfaces) {}
+
+  /// The properties of the mesh's triangles. The first view welds the mesh and closes its seams.
+  [[nodiscard]] SeenMesh see_mesh(const Sight& sight, const Execution& execution) {
+    if (!is_ready) {
+      mesh = weld(surfaces, execution);
+      SeenMesh seen = see(mesh, sight, execution);
+      const bool had_seams = close_seams(mesh, seen.facing, execution);
+      table = corner_table(mesh, execution);
+      is_ready = true;
+      if (!had_seams) return seen;
+    }
+    return see(mesh, sight, execution);
+  }
+
+  const Surfaces& surfaces;
+  bool is_ready = false;
+  WeldedMesh mesh;
+  CornerTable table;
+  std::optional<CrossedPairs> pairs;
+};
+
+LineDrawer::LineDrawer(const Surfaces& surfaces) : state_(std::make_unique<State>(surfaces)) {}
+LineDrawer::~LineDrawer() = default;
+LineDrawer::LineDrawer(LineDrawer&&) noexcept = default;
+LineDrawer& LineDrawer::operator=(LineDrawer&&) noexcept = default;
+
+Drawing LineDrawer::draw(const View& view, const LineOptions& options, const Execution& execution) {
   validate(view);
   if (options.crease_angle && !(*options.crease_angle >= 0 && *options.crease_angle <= 3.1415926535897932))
     throw Error(ErrorCode::bad_argument, "crease_angle", "must be from 0 to pi");
   const IeeeScope ieee;
+  const Surfaces& surfaces = state_->surfaces;
+  const WeldedMesh& mesh = state_->mesh;
   const Arena arena(kBytesPerTriangle * surfaces.primitive_count());
   report_progress(execution, "lines", 0);
-  WeldedMesh mesh = weld(surfaces, execution);
   const Sight sight(view);
-  SeenMesh seen = see_closed(mesh, sight, execution);
-  Features features = find_features(seen, surfaces, options, execution);
+  SeenMesh seen = state_->see_mesh(sight, execution);
+  Features features = find_features(seen, state_->table, surfaces, options, execution);
   // Coincident triangles hide no more than one of them, so only the first is kept.
   if (!options.counts_hidden)
     for (const std::uint32_t twin : features.twins) seen.facing[twin] = 0;
@@ -152,7 +174,10 @@ Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions
   drawing.view = view;
   try {
     std::vector<Crossing> crossings;
-    if (options.intersections) crossings = find_crossings(mesh, features, execution);
+    if (options.intersections) {
+      if (!state_->pairs) state_->pairs = find_crossed_pairs(mesh, features, execution);
+      crossings = find_crossings(mesh, features, *state_->pairs, execution);
+    }
     std::erase_if(crossings, [&](const Crossing& crossing) {
       return meet_at_gap(mesh, features.continued, crossing.left, crossing.right);
     });
@@ -164,6 +189,10 @@ Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions
     throw with_place(error, grid, mesh, surfaces);
   }
   return drawing;
+}
+
+Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions& options, const Execution& execution) {
+  return LineDrawer(surfaces).draw(view, options, execution);
 }
 
 }  // namespace frontmost

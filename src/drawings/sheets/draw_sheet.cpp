@@ -162,18 +162,20 @@ bool shows_hidden(const SheetOptions& options, NamedView direction) {
          options.hidden_views->end();
 }
 
-/// Draws the lines of a view whose surfaces are known, of a model in this scene.
-void draw_lines_of(PlannedView& planned, const View& view, const Scene& scene, const SheetOptions& options,
+/// Draws the lines of a view whose surfaces and camera are known, of a model in this scene.
+void draw_lines_of(PlannedView& planned, LineDrawer& drawer, const Scene& scene, const SheetOptions& options,
                    const Execution& execution) {
   const LineOptions wanted{
       .crease_angle = options.crease_angle, .ripples = false, .outlines = options.style == DrawingStyle::figure};
-  planned.drawing = draw_lines(*planned.surfaces, view, wanted, execution);
+  planned.drawing = drawer.draw(planned.drawing.view, wanted, execution);
+  const View& view = planned.drawing.view;
   const Projection& p = view.projection;
   if (p.orthographic)
     planned.millimetres_per_pixel = (p.right - p.left) / view.width * millimetres_per_unit(options, scene);
 }
 
-PlannedView draw_named(const Surfaces& surfaces, NamedView direction, const SectionView* section,
+/// A view without its lines.
+PlannedView plan_named(const Surfaces& surfaces, NamedView direction, const SectionView* section,
                        std::span<const UncutObject> uncut, const SheetOptions& options, const Execution& execution) {
   View view = frame(surfaces, fine_grid.x, fine_grid.y,
                     {.direction = direction, .orthographic = true, .objects = FramedObjects::all});
@@ -189,7 +191,7 @@ PlannedView draw_named(const Surfaces& surfaces, NamedView direction, const Sect
   result.shows_hidden = !section && shows_hidden(options, direction);
   result.surfaces = surfaces_for(surfaces, view, options, execution);
   if (section) cut_surfaces(result, *section, uncut, view, execution);
-  draw_lines_of(result, view, surfaces.scene(), options, execution);
+  result.drawing.view = view;
   return result;
 }
 
@@ -197,18 +199,26 @@ PlannedView draw_named(const Surfaces& surfaces, NamedView direction, const Sect
 std::vector<PlannedView> draw_named_views(const Surfaces& surfaces, const SheetOptions& options,
                                           const Execution& execution) {
   std::vector<PlannedView> views;
+  LineDrawer whole(surfaces);
+  const auto draw_lines_in = [&](PlannedView& view) {
+    if (view.surfaces.get() == &surfaces) return draw_lines_of(view, whole, surfaces.scene(), options, execution);
+    LineDrawer own(*view.surfaces);
+    draw_lines_of(view, own, surfaces.scene(), options, execution);
+  };
   for (const NamedView direction : options.views) {
-    PlannedView& view = views.emplace_back(draw_named(surfaces, direction, nullptr, {}, options, execution));
+    PlannedView& view = views.emplace_back(plan_named(surfaces, direction, nullptr, {}, options, execution));
     view.name = view.placed.name = view_name(direction);
+    draw_lines_in(view);
   }
   std::vector<UncutObject> uncut;
   if (!options.sections.empty()) uncut = uncut_objects(surfaces, options.uncut, execution);
   for (std::size_t i = 0; i < options.sections.size(); ++i) {
     const SectionView& section = options.sections[i];
     PlannedView& view =
-        views.emplace_back(draw_named(surfaces, section.direction, &section, uncut, options, execution));
+        views.emplace_back(plan_named(surfaces, section.direction, &section, uncut, options, execution));
     view.letter = clear_letters[i];
     view.name = view.placed.name = view.letter + "-" + view.letter;
+    draw_lines_in(view);
   }
   return views;
 }
@@ -448,7 +458,9 @@ Sheet draw_view(const Surfaces& surfaces, const View& view, const SheetOptions& 
   std::vector<PlannedView> views(1);
   views[0].surfaces = surfaces_for(surfaces, view, options, execution);
   views[0].shows_hidden = options.hidden != HiddenLines::none;
-  draw_lines_of(views[0], view, surfaces.scene(), options, execution);
+  views[0].drawing.view = view;
+  LineDrawer drawer(*views[0].surfaces);
+  draw_lines_of(views[0], drawer, surfaces.scene(), options, execution);
   return finish(std::move(views), surfaces, options, execution);
 }
 

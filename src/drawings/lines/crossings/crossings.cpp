@@ -388,9 +388,25 @@ auto order(const Crossing& c) {
   return std::make_tuple(a.x, a.y, a.z, b.x, b.y, b.z, c.left, c.right);
 }
 
+/// Sorts segments by their ends, of which the lesser one becomes the first, and removes repeated ones, and those whose
+/// ends were rounded to one place.
+void arrange(std::vector<Crossing>& all, const Execution& execution) {
+  for (Crossing& c : all) {
+    const glm::dvec3 &p = c.from.place, &q = c.to.place;
+    if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(c.from, c.to);
+  }
+  std::erase_if(all, [](const Crossing& c) { return c.from.place == c.to.place; });
+  sort_in_parts(
+      all, [](const Crossing& a, const Crossing& b) { return order(a) < order(b); }, execution);
+  const auto is_same_line = [](const Crossing& a, const Crossing& b) {
+    return a.from.place == b.from.place && a.to.place == b.to.place;
+  };
+  all.erase(std::unique(all.begin(), all.end(), is_same_line), all.end());
+}
+
 }  // namespace
 
-std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features, const Execution& execution) {
+CrossedPairs find_crossed_pairs(const WeldedMesh& mesh, const Features& features, const Execution& execution) {
   if (mesh.triangles.size() < features.twins.size() + 2) return {};
   const BoxTree tree(mesh, features, execution);
   const std::size_t parts = (tree.group_count() + kGroupsPerPart - 1) / kGroupsPerPart;
@@ -426,20 +442,16 @@ std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& fea
     crossings[begin / kGroupsPerPart] = std::move(found.crossings);
     contacts[begin / kGroupsPerPart] = std::move(found.contacts);
   });
-  std::vector<Crossing> all = joined(crossings, execution);
-  add_contacts(mesh, features, joined(contacts, execution), all);
-  for (Crossing& c : all) {  // the lesser end is the first
-    const glm::dvec3 &p = c.from.place, &q = c.to.place;
-    if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(c.from, c.to);
-  }
-  // The ends of some were rounded to one place.
-  std::erase_if(all, [](const Crossing& c) { return c.from.place == c.to.place; });
-  sort_in_parts(
-      all, [](const Crossing& a, const Crossing& b) { return order(a) < order(b); }, execution);
-  const auto is_same_line = [](const Crossing& a, const Crossing& b) {
-    return a.from.place == b.from.place && a.to.place == b.to.place;
-  };
-  all.erase(std::unique(all.begin(), all.end(), is_same_line), all.end());
+  CrossedPairs pairs{joined(crossings, execution), joined(contacts, execution)};
+  arrange(pairs.crossings, execution);
+  return pairs;
+}
+
+std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features, const CrossedPairs& pairs,
+                                     const Execution& execution) {
+  std::vector<Crossing> all = pairs.crossings;
+  add_contacts(mesh, features, pairs.contacts, all);
+  if (all.size() > pairs.crossings.size()) arrange(all, execution);
   return all;
 }
 

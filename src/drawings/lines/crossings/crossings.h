@@ -26,18 +26,28 @@ struct Crossing {
   std::uint32_t left, right;  ///< the triangles
 };
 
-/// The segments of all pairs of triangles that each have a corner strictly on either side of the other's plane, by
-/// exact signs, and those of add_contacts(). Copies of a triangle give each segment once. Sorted by the segments' ends.
-/// O(triangles log triangles + pairs whose boxes touch).
-/// \throws Error limit_exceeded beyond 2^20 segments and 16 a triangle, or 2^27 pairs and 32 a triangle.
-[[nodiscard]] std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features,
-                                                   const Execution& execution);
-
 /// An edge that lies in the plane of a triangle but is none of that triangle's edges. `from` is the lower vertex.
 struct EdgeContact {
   std::uint32_t from, to, triangle;
   friend auto operator<=>(const EdgeContact&, const EdgeContact&) = default;
 };
+
+/// What does not depend on the view.
+struct CrossedPairs {
+  std::vector<Crossing> crossings;  ///< sorted by the segments' ends, each segment once
+  std::vector<EdgeContact> contacts;
+};
+
+/// The segments of all pairs of triangles that each have a corner strictly on either side of the other's plane, by
+/// exact signs. Copies of a triangle give each segment once. Of `features`, the twins and the spread vertices are used.
+/// O(triangles log triangles + pairs whose boxes touch).
+/// \throws Error limit_exceeded beyond 2^20 segments and 16 a triangle, or 2^27 pairs and 32 a triangle.
+[[nodiscard]] CrossedPairs find_crossed_pairs(const WeldedMesh& mesh, const Features& features,
+                                              const Execution& execution);
+
+/// The segments of the pairs and those of add_contacts(), sorted by their ends, each once. O(segments log segments).
+[[nodiscard]] std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features,
+                                                   const CrossedPairs& pairs, const Execution& execution);
 
 /// Appends a segment for each contact whose edge reaches the triangle, if the edge's own two triangles lie on different
 /// sides of the triangle's plane. If the edge lies along an edge of the triangle, a segment is appended if the

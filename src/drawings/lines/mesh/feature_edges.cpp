@@ -445,9 +445,8 @@ CornerTable corner_table(const WeldedMesh& mesh, const Execution& execution) {
   return {mesh.positions.size(), mesh.triangles.size(), list, execution};
 }
 
-Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options,
-                       const Execution& execution) {
-  const CornerTable table = corner_table(seen.mesh, execution);
+Features find_features(const SeenMesh& seen, const CornerTable& table, const Surfaces& surfaces,
+                       const LineOptions& options, const Execution& execution) {
   const Classifier classifier(seen, surfaces, options);
   const StarsKernel find_stars = stars_kernel(execution.isa);
   const std::size_t vertices = seen.mesh.positions.size();

@@ -32,9 +32,9 @@ struct Features {
   Buffer<std::uint8_t> is_spread;
 };
 
-/// Finds the features. O(triangles * log(triangles at a vertex)).
-[[nodiscard]] Features find_features(const SeenMesh& seen, const Surfaces& surfaces, const LineOptions& options,
-                                     const Execution& execution);
+/// Finds the features; `table` is that of the mesh. O(triangles * log(triangles at a vertex)).
+[[nodiscard]] Features find_features(const SeenMesh& seen, const CornerTable& table, const Surfaces& surfaces,
+                                     const LineOptions& options, const Execution& execution);
 
 /// A triangle at an edge; the edge's lower vertex is known from the context.
 struct Side {
@@ -80,11 +80,10 @@ inline constexpr double kLeastFoldCosine = 0.96592582628906831;
 void judge_creases(const SeenMesh& seen, const CornerTable& table, std::vector<FeatureEdge>& edges,
                    const Execution& execution);
 
-/// For each edge, 1 if it is a silhouette of a ripple: it bends by less than 34 degrees, and beside it, as seen from the
-/// eye, the same surface goes on. The surface counts as the same within two rings of triangles around the edge, where
-/// it turns by less than 30 degrees. O(edges).
+/// For each edge, 1 if it is a silhouette of a ripple: it bends by less than 34 degrees, and beside it, as seen from
+/// the eye, the same surface goes on. The surface counts as the same within two rings of triangles around the edge,
+/// where it turns by less than 30 degrees. O(edges).
 [[nodiscard]] std::vector<std::uint8_t> find_ripples(const SeenMesh& seen, const CornerTable& table,
-                                                     const std::vector<FeatureEdge>& edges,
-                                                     const Execution& execution);
+                                                     const std::vector<FeatureEdge>& edges, const Execution& execution);
 
 }  // namespace frontmost::lines_detail
