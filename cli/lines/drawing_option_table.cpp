@@ -100,8 +100,8 @@ constexpr Option drawing_options[] = {
        s.drawing.sheet.crease_angle = glm::radians(g.number({0, 180}));
      }},
     {"shortest-stroke", 0, "MM",
-     "Leave out strokes shorter than this, 0 to 10, except pieces of outlines and strokes that connect others; 0.5 by "
-     "default with --plot, 0 otherwise.",
+     "Leave out strokes and hatch lines shorter than this, 0 to 10, except pieces of outlines and strokes that connect "
+     "others; 0.5 by default with --plot, 0 otherwise. Hatch lines below 0.2 are always left out.",
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.shortest_stroke = g.number(); }},
     {"hatch", 0, "MM",
      "Hatch dark surfaces with lines this far apart, 0.2 to 50. Darker surfaces have twice as many lines; other lines "
@@ -177,7 +177,7 @@ constexpr Option drawing_options[] = {
      [](Settings& s, const Given& g) { s.drawing.sheet.dimensions = Dimensioning(1 + g.choice<int>()); }},
     {"plot", 0, "",
      "Prepare the drawing for pen plotters: strokes are joined across objects and ordered for few lifts of the pen; "
-     "every dash is a line of its own.",
+     "strokes within half the --pen of others are left out; every dash is a line of its own.",
      Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.sheet.plot = true; }},
     {"frame", 0, "",
      "Draw a frame and a title block (ISO 5457, ISO 7200); each of the five texts below implies it. The page must be "

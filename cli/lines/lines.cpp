@@ -37,6 +37,7 @@ Json view_json(const DrawnView& view, const std::string& name) {
           {"edges_by_kind", kinds},
           {"parts", view.drawing.parts.size()},
           {"strokes", view.placed.strokes.strokes.size()},
+          {"covered_strokes", view.placed.strokes.covered},
           {"centre_lines", view.placed.centre_lines.size()},
           {"visible_mm", seen},
           {"hidden_mm", hidden}};
@@ -132,12 +133,24 @@ std::vector<std::string> open_outlines(const Sheet& sheet) {
   return warnings;
 }
 
+/// Returns a warning about strokes that were left out because they lie in the ink of others, if there are any.
+std::optional<std::string> covered_warning(const Sheet& sheet) {
+  std::size_t covered = 0;
+  for (const DrawnView& view : sheet.views) covered += view.placed.strokes.covered;
+  if (covered == 0) return std::nullopt;
+  return fmt::format(
+      "{} strokes are left out because all of each lies within half the pen's width of others; a smaller --pen draws "
+      "more of them",
+      covered);
+}
+
 void warn_of(const Sheet& sheet, const Surfaces& surfaces, const Settings& settings, Progress& progress) {
   const auto warn = [&](const std::vector<std::string>& texts) { show_warnings(texts, settings.run, progress); };
   if (sheet.is_empty) warn({"nothing of the model is in view; the drawing is empty"});
   if (const auto lying = up_warning(settings.view, settings.load, surfaces)) warn({*lying});
   if (const auto hint = unit_hint(settings.drawing, surfaces, sheet.scale.value_or(0))) warn({*hint});
   warn(open_outlines(sheet));
+  if (const auto covered = covered_warning(sheet)) warn({*covered});
   if (sheet.left_out > 0)
     warn(
         {fmt::format("{} diameters and positions are left out for lack of room (a sheet has 64 diameters at most); use "

@@ -155,9 +155,14 @@ struct StrokeOptions {
   /// Pixels, 0 to 10000: a shorter stroke is left out if it ends in the air, or joins lines that continue without it.
   /// Pieces of silhouettes and boundaries that close an outline are kept.
   double shortest = 0;
-  /// True, for plotters: each stroke begins as near as possible to the end of the stroke before, and continues that
-  /// stroke if the two touch. False: strokes come in the order of their parts.
+  /// True, for plotters: strokes whose ends meet are joined, and each begins as near as possible to the end of the one
+  /// before. False: strokes come in the order of their parts.
   bool nearest_first = false;
+  /// Pixels, 0 to 100: with `nearest_first`, ends of two strokes that are at most this far apart meet.
+  double joining = 0.01;
+  /// Pixels, 0 to 1000, half the width of a pen: a stroke is left out if each of its points is at most this far from
+  /// longer strokes of its class, or from strokes of a class that is drawn over it. 0: none is left out.
+  double covered_within = 0;
 };
 
 /// A line from point to point, drawn without lifting the pen.
@@ -177,6 +182,7 @@ struct Strokes {
   std::vector<double> bulges;
   /// Sorted: hidden strokes first; then by outline, kind and instance.
   std::vector<Stroke> strokes;
+  std::size_t covered = 0;  ///< number of strokes left out by StrokeOptions::covered_within
 };
 
 /// Joins parts of one class (seen or hidden, outline, kind, instance) into strokes wherever exactly two of them meet.
@@ -227,7 +233,8 @@ struct HatchOptions {
   ToneOptions tone{};
   double shortest = 0;      ///< pixels, 0 to 1000: shorter lines are left out
   bool by_instance = true;  ///< false: lines continue from object to object
-  /// True, for plotters: within a set (and instance), each line begins near the end of the one before.
+  /// True, for plotters: each line begins near the end of the one before, whatever their sets; lines are sorted by
+  /// instance only.
   bool nearest_first = false;
 };
 

@@ -372,11 +372,13 @@ struct SheetOptions {
   /// Millimetres, 0.01 to 10: width of seen lines; other widths and dashes scale with it. None: the pens of `style`.
   std::optional<double> pen = std::nullopt;
   std::optional<double> crease_angle = std::nullopt;  ///< radians, see LineOptions
-  /// Millimetres, 0 to 10, see StrokeOptions::shortest. None: 0.5 for plotters, otherwise 0.
+  /// Millimetres, 0 to 10, see StrokeOptions::shortest; hatch lines are this long or 0.2. None: 0.5 for plotters,
+  /// otherwise 0.
   std::optional<double> shortest_stroke = std::nullopt;
   std::optional<bool> centre_lines = std::nullopt;  ///< none: on technical sheets of named views
-  /// True, for pen plotters: strokes continue from object to object, ordered to spare lifts of the pen.
-  /// Use with_real_dashes() to make each dash a line.
+  /// True, for pen plotters: strokes continue from object to object and across gaps of 0.05 mm, ordered to spare lifts
+  /// of the pen. Strokes within half the width of seen lines from others are left out, see Strokes::covered. Use
+  /// with_real_dashes() to make each dash a line.
   bool plot = false;
 
   // Paper and scale.

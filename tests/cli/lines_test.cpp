@@ -347,6 +347,46 @@ TEST_F(LinesCommand, PlottersTakeHatchLinesInTheirOrder) {
   EXPECT_LT(plotted, moved / 3);
 }
 
+TEST_F(LinesCommand, PlottersDrawNothingTwiceInTheInkOfTheirPen) {
+  // Two plates of 0.2 mm in a pile: of the three long edges, the middle one is 0.2 mm from both others.
+  std::string text;
+  for (int i = 0; i < 12; ++i)
+    text += "v " + std::string(i & 1 ? "40 " : "0 ") + (i & 2 ? "30 " : "0 ") + std::to_string(i / 4 * 0.2) + "\n";
+  write("pile.obj", text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\no upper\n" +
+                        "f 5 7 8 6\nf 9 10 12 11\nf 5 6 10 9\nf 7 11 12 8\nf 5 9 11 7\nf 6 8 12 10\n");
+  const std::string pile = "lines pile.obj --up +z --view front --camera-orthographic --scale 1:1 --plot --json ";
+  const Outcome covered = succeed(pile), fine = succeed(pile + "--pen 0.38");
+  EXPECT_THAT(covered.err, HasSubstr("warning: 1 strokes are left out"));
+  EXPECT_EQ(covered.json()["views"][0]["covered_strokes"], 1);
+  EXPECT_EQ(covered.json()["paths"], 1);
+  EXPECT_NEAR(covered.json()["drawn_mm"].get<double>(), 2 * 40.4, 0.01);
+  EXPECT_EQ(fine.err, "");
+  EXPECT_EQ(fine.json()["views"][0]["covered_strokes"], 0);
+  EXPECT_NEAR(fine.json()["drawn_mm"].get<double>(), 2 * 40.4 + 40, 0.01);
+}
+
+TEST_F(LinesCommand, HatchLinesAreAsLongAsStrokes) {
+  const std::string hatched = "lines builtin:teapot --hatch 2 --page a4 --cast-shadows no --quiet -o hatched.json";
+  const auto shortest = [&](const std::string& options) {
+    succeed(hatched + options);
+    double least = 1e9;
+    const json page = json::parse(read("hatched.json"));
+    for (const json& layer : page["layers"])
+      if (layer["name"] == "4 hatching")
+        for (const json& group : layer["groups"])
+          for (const json& path : group["paths"]) {
+            const json& points = path["points"];
+            least = std::min(least, std::hypot(points[0][0].get<double>() - points[1][0].get<double>(),
+                                               points[0][1].get<double>() - points[1][1].get<double>()));
+          }
+    return least;
+  };
+  EXPECT_LT(shortest(""), 0.5);
+  EXPECT_GE(shortest(" --plot"), 0.499);
+  EXPECT_GE(shortest(" --shortest-stroke 1"), 0.999);
+  EXPECT_LT(shortest(" --plot --shortest-stroke 0"), 0.5);
+}
+
 TEST_F(LinesCommand, HiddenEdgesAsAsked) {
   const std::string iso = "lines cube.stl --view iso --camera-orthographic -o drawing.svg --hidden ";
   succeed(iso + "none");

@@ -227,13 +227,15 @@ TEST(StrokesOrder, OfEndsAsNearTheFirst) {
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
   const Strokes all = chain_strokes(surfaces, drawing, {.by_instance = false, .nearest_first = true});
-  // Each stroke comes in along one spoke, and leaves along the lowest that is left.
+  // Each stroke comes in along one spoke, and leaves along the lowest that is left: spokes 0 and 1, 2 and 3, and so on.
+  // The first stroke begins at spoke 62, which ends nearest to the picture's corner.
   EXPECT_EQ(all.strokes.size(), std::size_t(count / 2));
   double length = 0;
   for (const Stroke& stroke : all.strokes) length += length_of(all, stroke);
   EXPECT_NEAR(length, 50 * count, 0.3 * count);
   EXPECT_EQ(all.points[1], glm::dvec2(200, 200));
-  EXPECT_EQ(all.points[2], drawing.parts[0].to);
+  EXPECT_EQ(all.points[0], drawing.parts[62].to);
+  EXPECT_EQ(all.points[2], drawing.parts[63].to);
 }
 
 /// Short lines within a three-hundredth of the picture, and one on its other side. The tests of LaidLines count the

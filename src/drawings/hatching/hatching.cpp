@@ -557,25 +557,20 @@ std::vector<HatchPiece> united(std::vector<HatchPiece> pieces) {
   return whole;
 }
 
-/// Orders the lines of each set and instance separately.
+/// Orders the lines of each instance.
 std::vector<HatchLine> in_pen_order(std::vector<HatchLine> lines, const Execution& execution) {
-  const auto is_before = [](const HatchLine& a, const HatchLine& b) {
-    return std::tie(a.set, a.instance) < std::tie(b.set, b.instance);
-  };
-  std::stable_sort(lines.begin(), lines.end(), is_before);
-  std::vector<HatchLine> of_rank;
+  std::stable_sort(lines.begin(), lines.end(),
+                   [](const HatchLine& a, const HatchLine& b) { return a.instance < b.instance; });
   std::vector<Chain> chains;
-  for (const HatchLine& line : lines) {
-    if (of_rank.empty() || is_before(of_rank.back(), line)) of_rank.push_back(line);
-    chains.push_back({{line.from, line.to}, {}, std::uint32_t(of_rank.size() - 1), false});
+  chains.reserve(lines.size());
+  for (const HatchLine& line : lines) chains.push_back({{line.from, line.to}, {}, line.instance, false});
+  std::vector<HatchLine> ordered;
+  ordered.reserve(lines.size());
+  for (const std::uint32_t end : pen_order(chains, execution)) {
+    HatchLine& line = ordered.emplace_back(lines[end / 2]);
+    if (end % 2 == 1) std::swap(line.from, line.to);
   }
-  constexpr double never = -1;
-  lines.clear();
-  for (const Chain& chain : nearest_first(std::move(chains), never, execution)) {
-    const HatchLine& like = of_rank[chain.rank];
-    lines.push_back({chain.points.front(), chain.points.back(), like.set, like.instance});
-  }
-  return lines;
+  return ordered;
 }
 
 /// The bits of HatchTask::sets_by_material.

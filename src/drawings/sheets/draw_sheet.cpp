@@ -265,6 +265,12 @@ constexpr double plotted_stroke = 0.5;                 // millimetres: the short
 constexpr double paper_tolerance = 0.01;               // millimetres: for arcs, and for lines that count as one
 constexpr double stroke_tolerance = 0.0005;            // millimetres: half of the rounding unit of coordinates
 constexpr double shortest_hatch = 0.2;                 // millimetres: shorter hatch lines are dots of the pen
+constexpr double plotted_gap = 0.05;                   // millimetres: a plotter's pen draws across smaller gaps
+
+/// Millimetres, of edges.
+double shortest_stroke(const SheetOptions& options) {
+  return options.shortest_stroke.value_or(options.plot ? plotted_stroke : 0);
+}
 
 StrokeOptions stroke_options(const PlannedView& view, const SheetOptions& options) {
   const double millimetres = view.placed.millimetres_per_pixel;
@@ -276,8 +282,11 @@ StrokeOptions stroke_options(const PlannedView& view, const SheetOptions& option
   strokes.nearest_first = options.plot;
   strokes.apart = std::clamp(paper_tolerance / millimetres, 0.002, 1.0);
   strokes.tolerance = std::clamp(stroke_tolerance / millimetres, 1e-4, 1.0);
-  strokes.shortest = std::min(options.shortest_stroke.value_or(options.plot ? plotted_stroke : 0) / millimetres, 1e4);
+  strokes.shortest = std::min(shortest_stroke(options) / millimetres, 1e4);
   strokes.arc_tolerance = std::min(paper_tolerance / millimetres, 100.0);
+  if (!options.plot) return strokes;
+  strokes.joining = std::min(plotted_gap / millimetres, 100.0);
+  strokes.covered_within = std::min(pens_of(options).seen.width / 2 / millimetres, 1000.0);
   return strokes;
 }
 
@@ -303,9 +312,10 @@ void place_tones(PlannedView& view, const SheetOptions& options, const Execution
   const double millimetres = view.placed.millimetres_per_pixel;
   if (options.hatch) {
     check_spacing("hatch", *options.hatch, millimetres);
+    const double shortest = std::max(shortest_hatch, shortest_stroke(options));
     const HatchOptions lines{hatch_sets(*options.hatch / millimetres, options.hatch_angle),
-                             tone_options(options, camera), std::min(shortest_hatch / millimetres, 1000.0),
-                             !options.plot, options.plot};
+                             tone_options(options, camera), std::min(shortest / millimetres, 1000.0), !options.plot,
+                             options.plot};
     view.placed.hatching = hatch(*view.surfaces, camera, lines, execution);
   }
   if (options.stipple) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An order of chains with little pen travel: the next chain begins at the nearest end.
+// An order of chains with little pen travel: chains whose ends meet are joined, and the next chain begins at the
+// nearest end.
 //
 //    ends left in a box    lowest    Of equally near ends the lowest number is taken. A box is entered only if it may
 //    [ 3 7 9 | 4 5 ]         3       hold a nearer end, or one as near with a lower number. Both ends of a chain leave
@@ -33,11 +34,13 @@ class EndTree {
     build(0, 0, ends_.size());
   }
 
-  /// The remaining end nearest to `from`; among equals, the lowest number. Precondition: at least one remains.
-  [[nodiscard]] std::uint32_t nearest(const glm::dvec2& from) const {
+  using Found = std::pair<double, std::uint32_t>;  ///< squared distance and number
+
+  /// The remaining end nearest to `from`, other than `except`; among equals, the lowest number. no_end if none remains.
+  [[nodiscard]] Found nearest(const glm::dvec2& from, std::uint32_t except = no_end) const {
     Found best(std::numeric_limits<double>::infinity(), no_end);
-    visit(0, from, best);
-    return best.second;
+    visit(0, from, except, best);
+    return best;
   }
 
   void remove(std::uint32_t number) {
@@ -67,7 +70,6 @@ class EndTree {
     std::uint32_t lowest = no_end;
     bool is_leaf = true;
   };
-  using Found = std::pair<double, std::uint32_t>;  ///< distance and number
 
   void build(std::size_t number, std::size_t begin, std::size_t end) {
     Node& node = nodes_[number];
@@ -93,10 +95,11 @@ class EndTree {
     return glm::dot(d, d);
   }
 
-  void visit(std::size_t number, const glm::dvec2& from, Found& best) const {
+  void visit(std::size_t number, const glm::dvec2& from, std::uint32_t except, Found& best) const {
     const Node& node = nodes_[number];
     if (node.is_leaf) {
       for (std::uint32_t i = node.begin; i < node.end; ++i) {
+        if (ends_[i].number == except) continue;
         const glm::dvec2 d = ends_[i].at - from;
         best = std::min(best, Found(glm::dot(d, d), ends_[i].number));
       }
@@ -107,7 +110,7 @@ class EndTree {
     const int first = std::tie(distances[1], nodes_[below[1]].lowest) < std::tie(distances[0], nodes_[below[0]].lowest);
     for (const int i : {first, 1 - first}) {
       const std::uint32_t lowest = nodes_[below[i]].lowest;
-      if (lowest != no_end && Found(distances[i], lowest) < best) visit(below[i], from, best);
+      if (lowest != no_end && Found(distances[i], lowest) < best) visit(below[i], from, except, best);
     }
   }
 
@@ -127,46 +130,123 @@ void reverse(Chain& chain) {
   for (double& bulge : chain.bulges) bulge = -bulge;
 }
 
-/// Appends `chain`, or joins it to the last chain if both are open and touch.
-void draw(Chain&& chain, double touching, std::size_t first, std::vector<Chain>& drawn) {
-  if (drawn.size() > first && !drawn.back().is_closed && !chain.is_closed &&
-      glm::distance(drawn.back().points.back(), chain.points.front()) <= touching) {
-    Chain& last = drawn.back();
-    const bool has_bulges = !last.bulges.empty() || !chain.bulges.empty();
-    if (has_bulges) {
-      last.bulges.resize(last.points.size(), 0);
-      chain.bulges.resize(chain.points.size(), 0);
-      last.bulges.pop_back();
-      last.bulges.insert(last.bulges.end(), chain.bulges.begin(), chain.bulges.end());
-    }
-    last.points.pop_back();
-    last.points.insert(last.points.end(), chain.points.begin(), chain.points.end());
-    return;
+/// Calls visit(first, last) for each range of chains of one rank.
+template <class Visit>
+void for_each_rank(const std::vector<Chain>& chains, const Visit& visit) {
+  for (std::size_t first = 0, last; first < chains.size(); first = last) {
+    last = first + 1;
+    while (last < chains.size() && chains[last].rank == chains[first].rank) ++last;
+    visit(first, last);
   }
-  drawn.push_back(std::move(chain));
+}
+
+/// Which ends are joined. Paths that are joined so far have two free ends each.
+///
+/// Each end takes the nearest free end of another path. Only then are paths closed, because a closed path would leave
+/// out others that touch it.
+class EndPairs {
+ public:
+  EndPairs(const std::vector<Chain>& chains, double apart)
+      : chains_(chains), apart_(apart), partner(2 * chains.size(), no_index) {
+    for (std::uint32_t end = 0; end < partner.size(); ++end) opposite_.push_back(end ^ 1);
+  }
+
+  /// Joins the ends of the chains from `first` to `last`, which have one rank.
+  void join(std::size_t first, std::size_t last, const Execution& execution) {
+    EndTree left(chains_, first, last);
+    for (std::size_t i = first; i < last; ++i)
+      if (chains_[i].is_closed)
+        for (const std::size_t end : {2 * i, 2 * i + 1}) left.remove(std::uint32_t(end));
+    for (auto end = std::uint32_t(2 * first); end < 2 * last; ++end) {
+      if (end % 1024 == 0) check_cancelled(execution);
+      if (!is_free(end)) continue;
+      left.remove(end);
+      const auto [square, other] = left.nearest(place(chains_, end), opposite_[end]);
+      if (!(square <= apart_ * apart_)) continue;
+      left.remove(other);
+      join(end, other);
+    }
+    for (auto end = std::uint32_t(2 * first); end < 2 * last; ++end) {
+      const std::uint32_t other = opposite_[end];
+      // A straight line is not closed, however short.
+      if (!is_free(end) || (other == (end ^ 1) && chains_[end / 2].points.size() < 3)) continue;
+      if (glm::distance(place(chains_, end), place(chains_, other)) <= apart_) join(end, other);
+    }
+  }
+
+ private:
+  [[nodiscard]] bool is_free(std::uint32_t end) const {
+    return !chains_[end / 2].is_closed && partner[end] == no_index;
+  }
+
+  void join(std::uint32_t a, std::uint32_t b) {
+    partner[a] = b;
+    partner[b] = a;
+    const std::uint32_t from = opposite_[a], to = opposite_[b];
+    opposite_[from] = to;
+    opposite_[to] = from;
+  }
+
+  const std::vector<Chain>& chains_;
+  const double apart_;
+  std::vector<std::uint32_t> opposite_;  ///< by free end: the other free end of its path
+
+ public:
+  std::vector<std::uint32_t> partner;  ///< by end: the end that it is joined to, or no_index
+};
+
+/// Appends the points of `from`, whose first point is left out if it is the last point of `to`.
+void append(const std::vector<glm::dvec2>& from, std::vector<glm::dvec2>& to) {
+  const bool is_there = !to.empty() && glm::distance(to.back(), from.front()) * places_per_pixel <= 1;
+  to.insert(to.end(), from.begin() + is_there, from.end());
 }
 
 }  // namespace
 
-std::vector<Chain> nearest_first(std::vector<Chain> chains, double touching, const Execution& execution) {
-  std::vector<Chain> drawn;
-  for (std::size_t first = 0; first < chains.size();) {
-    std::size_t last = first + 1;
-    while (last < chains.size() && chains[last].rank == chains[first].rank) ++last;
+std::vector<Chain> joined_ends(std::vector<Chain> chains, double apart, const Execution& execution) {
+  EndPairs pairs(chains, apart);
+  for_each_rank(chains, [&](std::size_t first, std::size_t last) { pairs.join(first, last, execution); });
+  std::vector<Chain> joined;
+  for_each_chain(pairs.partner, [&](const std::vector<std::uint32_t>& ends, bool is_closed) {
+    Chain& chain = joined.emplace_back(std::move(chains[ends[0] / 2]));
+    if (ends[0] % 2 == 1) reverse(chain);
+    for (std::size_t i = 1; i < ends.size(); ++i) {
+      Chain& next = chains[ends[i] / 2];
+      if (ends[i] % 2 == 1) reverse(next);
+      append(next.points, chain.points);
+      chain.is_contour |= next.is_contour;
+    }
+    if (!is_closed) return;
+    chain.is_closed = true;
+    if (glm::distance(chain.points.front(), chain.points.back()) * places_per_pixel <= 1) chain.points.pop_back();
+  });
+  std::stable_sort(joined.begin(), joined.end(), [](const Chain& a, const Chain& b) { return a.rank < b.rank; });
+  return joined;
+}
+
+std::vector<std::uint32_t> pen_order(const std::vector<Chain>& chains, const Execution& execution) {
+  std::vector<std::uint32_t> order;
+  order.reserve(chains.size());
+  for_each_rank(chains, [&](std::size_t first, std::size_t last) {
     EndTree left(chains, first, last);
-    const std::size_t begin = drawn.size();
     glm::dvec2 pen(0);
     for (std::size_t i = first; i < last; ++i) {
       if (i % 1024 == 0) check_cancelled(execution);
-      const std::uint32_t number = left.nearest(pen);
-      left.remove(number);
-      left.remove(number ^ 1);
-      Chain& chain = chains[number / 2];
-      if (number % 2 == 1 && !chain.is_closed) reverse(chain);
-      pen = chain.is_closed ? chain.points.front() : chain.points.back();
-      draw(std::move(chain), touching, begin, drawn);
+      const std::uint32_t end = left.nearest(pen).second;
+      left.remove(end);
+      left.remove(end ^ 1);
+      order.push_back(end);
+      pen = place(chains, end ^ 1);
     }
-    first = last;
+  });
+  return order;
+}
+
+std::vector<Chain> nearest_first(std::vector<Chain> chains, const Execution& execution) {
+  std::vector<Chain> drawn;
+  for (const std::uint32_t end : pen_order(chains, execution)) {
+    Chain& chain = drawn.emplace_back(std::move(chains[end / 2]));
+    if (end % 2 == 1 && !chain.is_closed) reverse(chain);
   }
   return drawn;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The steps from the parts of a drawing to strokes, and their data:
 //
-//    parts of a drawing --> segments --draw_once--> --chained--> chains --ShortChains-->
-//        --straighten--> --find_arcs--> --nearest_first--> Strokes
+//    parts of a drawing --> segments --draw_once--> --chained--> chains --ShortChains--> --uncovered-->
+//        --joined_ends--> --straighten--> --find_arcs--> --nearest_first--> Strokes
 //
 // A chain knows its rank and its points, but not the edges that it came from.
 #pragma once
@@ -31,6 +31,14 @@ struct Chain {
   bool is_closed = false;
   bool is_contour = false;  ///< some of its segments are pieces of a contour
 };
+
+/// Precondition: no arcs.
+inline double length_of(const Chain& chain) {
+  double length = 0;
+  for (std::size_t i = 1; i < chain.points.size(); ++i) length += glm::distance(chain.points[i - 1], chain.points[i]);
+  if (chain.is_closed) length += glm::distance(chain.points.back(), chain.points.front());
+  return length;
+}
 
 inline double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
 
@@ -89,8 +97,18 @@ void straighten(Chain& chain, double tolerance);
 /// chord stays within `tolerance` of the arc, or has neighbours of similar length.
 void find_arcs(Chain& chain, double tolerance);
 
-/// Sorts the chains of each rank in drawing order. The next chain begins at the end that is nearest to the end of the
-/// chain before, and is joined to that chain if their distance is at most `touching`.
-[[nodiscard]] std::vector<Chain> nearest_first(std::vector<Chain> chains, double touching, const Execution& execution);
+/// Leaves out chains whose points all lie within `within` pixels of chains that stay: those of a lower rank, or longer
+/// ones of the same rank. Precondition: no arcs.
+[[nodiscard]] std::vector<Chain> uncovered(std::vector<Chain> chains, double within, const Execution& execution);
+
+/// Joins chains of one rank whose ends are at most `apart` pixels from each other, by a straight line. Chains are
+/// sorted by rank, before and after. Precondition: no arcs.
+[[nodiscard]] std::vector<Chain> joined_ends(std::vector<Chain> chains, double apart, const Execution& execution);
+
+/// The order of drawing, rank by rank, as the ends at which the pen begins: 2 i where chain i begins, 2 i + 1 where it
+/// ends. The next end is the one nearest to the pen. Precondition: chains are sorted by rank.
+[[nodiscard]] std::vector<std::uint32_t> pen_order(const std::vector<Chain>& chains, const Execution& execution);
+/// The chains in that order and direction.
+[[nodiscard]] std::vector<Chain> nearest_first(std::vector<Chain> chains, const Execution& execution);
 
 }  // namespace frontmost::lines_detail

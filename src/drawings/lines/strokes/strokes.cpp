@@ -21,13 +21,6 @@ namespace {
 
 using namespace lines_detail;
 
-double length_of(const Chain& chain) {
-  double length = 0;
-  for (std::size_t i = 1; i < chain.points.size(); ++i) length += glm::distance(chain.points[i - 1], chain.points[i]);
-  if (chain.is_closed) length += glm::distance(chain.points.back(), chain.points.front());
-  return length;
-}
-
 double distance_to(const glm::dvec2& p, const glm::dvec2& a, const glm::dvec2& b) {
   const glm::dvec2 along = b - a;
   const double square = glm::dot(along, along);
@@ -253,6 +246,8 @@ void check(const StrokeOptions& options) {
   check_range(options.tolerance, 1e-4, 1, "the tolerance must be from 0.0001 to 1 pixel");
   check_range(options.arc_tolerance, 0, 100, "the tolerance of arcs must be from 0 to 100 pixels");
   check_range(options.shortest, 0, 1e4, "the shortest stroke must be from 0 to 10000 pixels");
+  check_range(options.joining, 0, 100, "the distance of ends that are joined must be from 0 to 100 pixels");
+  check_range(options.covered_within, 0, 1000, "the distance of covered strokes must be from 0 to 1000 pixels");
   check_range(options.grazing_angle, 0, std::numbers::pi / 2, "the grazing angle must be from 0 to pi/2");
 }
 
@@ -284,6 +279,13 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
   });
   report_progress(execution, "strokes", 0.6);
   if (options.shortest > 0) chains = ShortChains(chains, parts.strokes, options, execution).kept();
+  Strokes result;
+  if (options.covered_within > 0) {
+    result.covered = chains.size();
+    chains = uncovered(std::move(chains), options.covered_within, execution);
+    result.covered -= chains.size();
+  }
+  if (options.nearest_first) chains = joined_ends(std::move(chains), options.joining, execution);
   parallel_for(execution, chains.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       straighten(chains[i], options.tolerance);
@@ -291,13 +293,12 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
     }
   });
   report_progress(execution, "strokes", 0.8);
-  if (options.nearest_first) chains = nearest_first(std::move(chains), options.tolerance, execution);
+  if (options.nearest_first) chains = nearest_first(std::move(chains), execution);
   check_cancelled(execution);
   // Hidden chains have the highest ranks and are drawn first, below the others.
   std::stable_sort(chains.begin(), chains.end(), [&](const Chain& a, const Chain& b) {
     return parts.strokes[a.rank].is_hidden > parts.strokes[b.rank].is_hidden;
   });
-  Strokes result;
   for (const Chain& chain : chains) append(chain, parts.strokes[chain.rank], options.arc_tolerance > 0, result);
   report_progress(execution, "strokes", 1);
   return result;
