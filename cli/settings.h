@@ -108,6 +108,8 @@ struct OutputSettings {
   std::size_t most_polygons = 2000000;  ///< for figures
   double color_tolerance = 6;           ///< for figures, in steps of 8 bits
   bool merges_neighbours = false;       ///< for figures
+  bool edges = false;                   ///< whether pictures show the visible edges
+  std::optional<double> edge_width;     ///< pixels; none: by the size of the picture
   std::optional<int> layers;            ///< number of nearest layers for files with {layer} in their names
 };
 

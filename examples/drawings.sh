@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
 # The drawings of docs/drawings.md: a technical sheet, a plotter drawing, a figure for a paper and, where frontmost-import is
-# installed, the sheet of a CAD file.
+# installed, the sheet of a CAD file, and its picture with edges for docs/command-line.md.
 #
 #     PATH=$PATH:build/release examples/drawings.sh [FOLDER]
 set -eu
@@ -15,4 +15,5 @@ frontmost lines builtin:gallery --style figure --hatch 1.2 --page 160,100 --marg
 if [ -x "$(dirname "$(command -v frontmost)")/frontmost-import" ]; then
   frontmost lines "$here/cad/fixture.step" --views front,top,right,iso --dimensions all --page a3 \
     --title 'Drilling fixture' --number FM-0015 --author 'E. Example' --date 2026-03-01 -o fixture.svg -o fixture.pdf
+  frontmost render "$here/cad/fixture.step" --edges --resolution 640,360 -o edges.png
 fi

@@ -8,6 +8,7 @@
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/drawings.h"
+#include "python/pictures.h"
 #include "python/running.h"
 #include "python/shade_words.h"
 #include "python/view_words.h"
@@ -39,6 +40,7 @@ struct HeldPage {
   Page page;
   std::optional<double> scale;
   std::size_t left_out = 0, undrawn = 0, prisms = 0;  ///< as in Sheet
+  std::size_t covered = 0;                            ///< sum of Strokes::covered
 };
 struct HeldFigure {
   std::shared_ptr<const Figure> figure;
@@ -142,7 +144,9 @@ HeldPage sheet_of(const std::shared_ptr<HeldSurfaces>& held, const py::object& v
     const std::shared_lock lock(held->scene->reading);
     return view ? draw_view(held->surfaces, *view, options, execution) : draw_sheet(held->surfaces, options, execution);
   });
-  return {std::move(sheet.page), sheet.scale, sheet.left_out, sheet.undrawn, sheet.prisms};
+  std::size_t covered = 0;
+  for (const DrawnView& drawn : sheet.views) covered += drawn.placed.strokes.covered;
+  return {std::move(sheet.page), sheet.scale, sheet.left_out, sheet.undrawn, sheet.prisms, covered};
 }
 
 /// A drawing on a page of the view's size, at 96 pixels an inch.
@@ -165,6 +169,26 @@ HeldPage sheet_of_drawing(const HeldDrawing& held, HiddenLines hidden, DrawingSt
             return page_of(surfaces, {&placed, 1}, pens, millimetres_per_pixel * glm::dvec2(view.width, view.height));
           }),
       std::nullopt};
+}
+
+/// A picture in linear light with the seen edges of the drawing over it, in sRGB.
+py::object drawn_over(const HeldDrawing& held, const py::object& picture, double width, const py::object& color,
+                      Blend blend, int threads, const py::object& progress) {
+  const auto values = numbers<float>(picture, "picture", {-1, -1, 4});
+  const PicturePen pen{width, glm::vec3(point(color, "color")), blend};
+  Image image{int(values.shape(1)), int(values.shape(0)), {}};
+  const char* const names[] = {"R", "G", "B", "A"};
+  for (std::size_t c = 0; c < 4; ++c) {
+    Buffer<float> plane{std::size_t(image.width) * std::size_t(image.height)};
+    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = values.data()[4 * i + c];
+    image.channels.push_back({names[c], std::move(plane)});
+  }
+  run(threads, progress, [&](const Execution& execution) {
+    const std::shared_lock lock(held.of->scene->reading);
+    const StrokeOptions seen{.with_hidden = false, .by_kind = false, .by_outline = false, .by_instance = false};
+    draw_strokes(image, chain_strokes(held.of->surfaces, *held.drawing, seen, execution), pen, execution);
+  });
+  return bitmap_array(image);
 }
 
 HeldFigure figure_of(const std::shared_ptr<HeldSurfaces>& held, const View& view, double tolerance, bool visible_only,
@@ -245,6 +269,7 @@ void bind_sheets(py::module_& m) {
       .def_readonly("left_out", &HeldPage::left_out, doc("Sheet.left_out"))
       .def_readonly("undrawn", &HeldPage::undrawn, doc("Sheet.undrawn"))
       .def_readonly("prisms", &HeldPage::prisms, doc("Sheet.prisms"))
+      .def_readonly("covered", &HeldPage::covered, doc("Sheet.covered"))
       .def("__repr__", [](const HeldPage& held) {
         return "Sheet of " + paper_name({held.page.width, held.page.height}) +
                (held.scale ? ", " + scale_text(*held.scale) : "");
@@ -252,6 +277,9 @@ void bind_sheets(py::module_& m) {
   py::class_<HeldDrawing>(m.attr("Drawing"))
       .def("sheet", &sheet_of_drawing, py::kw_only(), "hidden"_a = HiddenLines::none, "style"_a = DrawingStyle::figure,
            doc("Drawing.sheet"))
+      .def("draw_over", &drawn_over, "picture"_a, py::kw_only(), "width"_a = 1.2,
+           "color"_a = py::make_tuple(0.1, 0.1, 0.1), "blend"_a = Blend::linear, "threads"_a = 0,
+           "progress"_a = py::none(), doc("Drawing.draw_over"))
       .def("_repr_svg_", [](const HeldDrawing& held) {
         return py::object(py::cast(sheet_of_drawing(held, HiddenLines::none, DrawingStyle::figure)).attr("svg"));
       });
@@ -272,10 +300,9 @@ void bind_sheets(py::module_& m) {
            "style"_a = DrawingStyle::technical, "pen"_a = py::none(), "crease_angle"_a = py::none(),
            "shortest_stroke"_a = py::none(), "centre_lines"_a = py::none(), "plot"_a = false, "page"_a = py::none(),
            "margin"_a = 10.0, "scale"_a = py::none(), "standard_scale"_a = py::none(),
-           "millimetres_per_unit"_a = py::none(), "in_inches"_a = py::none(), "title_block"_a = py::none(),
-           "hatch"_a = py::none(), "stipple"_a = py::none(), "hatch_angle"_a = 45.0, "light"_a = py::none(),
-           "casts_shadows"_a = true, "keeps_picture"_a = false, "threads"_a = 0, "progress"_a = py::none(),
-           doc("Surfaces.draw_sheet"))
+           "millimetres_per_unit"_a = py::none(), "in_inches"_a = py::none(), "title_block"_a = py::none(), "hatch"_a = py::none(), "stipple"_a = py::none(), "hatch_angle"_a = 45.0,
+           "light"_a = py::none(), "casts_shadows"_a = true, "keeps_picture"_a = false, "threads"_a = 0,
+           "progress"_a = py::none(), doc("Surfaces.draw_sheet"))
       .def("draw_figure", &figure_of, "view"_a, py::kw_only(), "tolerance"_a = 6.0, "visible_only"_a = true,
            "merges_neighbours"_a = false, "most_polygons"_a = 2000000, "shading"_a = Shading::lit,
            "background"_a = py::make_tuple(1.0, 1.0, 1.0), "shadows"_a = Shadows::map, "opacity"_a = 1.0f,

@@ -11,6 +11,7 @@
 #include "cli/console.h"
 #include "cli/failure.h"
 #include "cli/render/blank.h"
+#include "cli/render/edges.h"
 #include "cli/render/output_writer.h"
 #include "cli/stopwatch.h"
 
@@ -70,7 +71,8 @@ void write_figures(const Job& job, const RenderContext& context, const Sights& s
   if (job.figures.empty()) return;
   Stopwatch watch;
   const Figure figure = figure_of(job, context, sights, result.view);
-  const Page page = page_of(figure);
+  Page page = page_of(figure);
+  if (sights.edges) add_edges(page, *sights.edges, job, context, result.view);
   result.timings.shade += watch.milliseconds();
   if (job.output.background && nothing_stands_out(figure, *job.output.background))
     result.warnings.push_back(contrast_warning(false));

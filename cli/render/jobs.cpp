@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "cli/failure.h"
+#include "cli/render/edges.h"
 #include "cli/render/output_writer.h"
 #include "cli/render/render_view.h"
 #include "cli/render/shard.h"
@@ -67,6 +68,7 @@ Job make_job(const Settings& settings) {
   for (FileToWrite& file : plan_outputs(job.output, model, job.name))
     (file.layer ? job.layer_files : job.files).push_back(std::move(file));
   check_layers(settings, job);
+  check_edges(settings, job);
   check_outputs_around(job);
   if (settings.run.stream && settings.view.camera_model != CameraModel::pinhole)
     throw UsageError("--stream and --camera-model exclude each other");

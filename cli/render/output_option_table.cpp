@@ -108,6 +108,17 @@ constexpr Option output_options[] = {
 
     {"shading", 0, "lit|flat|normals|depth|ids|uv", "Values that the picture shows; lit by default.", Group::look,
      for_render, [](Settings& s, const Given& g) { s.output.shading = g.choice<Shading>(); }},
+    {"edges", 0, "",
+     "Draw the visible edges over the picture, as frontmost lines finds them: silhouettes, boundaries, creases, "
+     "borders "
+     "and intersections. Translucent surfaces hide edges, too.",
+     Group::look, for_render, [](Settings& s, const Given&) { s.output.edges = true; }},
+    {"edge-width", 0, "PIXELS",
+     "Width of --edges, 0.1 to 100; by default 1/900 of the picture's shorter side, at least 1.", Group::look,
+     for_render,
+     [](Settings& s, const Given& g) {
+       s.output.edge_width = g.number({0.1, 100});
+     }},
     {"background", 0, "COLOR",
      "Background: #rrggbb, r,g,b from 0 to 1, a common colour name, or transparent; white by default.", Group::look,
      for_render,

@@ -139,7 +139,7 @@ bool wants(const Job& job, OutputKind kind) {
 }
 
 bool needs_only_bitmap(const Job& job) {
-  if (job.output.reference || job.output.hash || job.output.bits != 8) return false;
+  if (job.output.reference || job.output.hash || job.output.bits != 8 || job.output.edges) return false;
   return std::all_of(job.files.begin(), job.files.end(), [](const FileToWrite& file) {
     if (is_picture_alone(file)) return file.format == ImageFormat::png || holds_pictures_alone(file.format);
     return std::find(file.kinds.begin(), file.kinds.end(), OutputKind::picture) == file.kinds.end();

@@ -28,7 +28,7 @@ struct OutputSource {
 /// Whether the job writes coloured outputs: a picture, polygons, layers, or a deep image.
 [[nodiscard]] bool writes_colors(const Job& job);
 
-/// Whether the picture goes only into separate 8-bit files (PNG, JPEG, WebP).
+/// Whether the picture goes only into separate 8-bit files (PNG, JPEG, WebP), and has no edges.
 [[nodiscard]] bool needs_only_bitmap(const Job& job);
 
 /// Writes all files of the job and notes them in the result.

@@ -10,6 +10,7 @@
 #include <algorithm>
 
 #include "cli/render/blank.h"
+#include "cli/render/edges.h"
 #include "cli/render/output_writer.h"
 #include "cli/stopwatch.h"
 #include "cli/view/sight.h"
@@ -211,6 +212,11 @@ ViewResult render_view(const Job& job, const RenderContext& context) {
   result.view = resolve_view(job.view, context.framed_surfaces());
   result.target = focal_point_of(job.view, result.view, context.framed_surfaces());
   Sights sights = look(job, context, result);
+  if (job.output.edges) {
+    const Stopwatch watch;
+    sights.edges = edges_of(context, result.view);
+    result.timings.shade += watch.milliseconds();
+  }
   finish_view(job, context, sights, result);
   write_layers(job, context, result);
   write_figures(job, context, sights, result);
@@ -246,6 +252,7 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
   const auto input = [&] { return sights.shade_input(context.index); };
   const Image* picture = nullptr;
   const Bitmap* bitmap = nullptr;
+  std::optional<Image> with_edges;
   if (wants_picture(job, context.keep_picture)) {
     const Stopwatch watch;
     const Visible& visible = input().first();
@@ -253,6 +260,10 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
       bitmap = &context.shader.shade_bitmap(input(), options, context.execution);
     else
       picture = &context.shader.shade(input(), options, context.execution);
+    if (sights.edges) {
+      picture = &with_edges.emplace(context.shader.take());
+      add_edges(*with_edges, *sights.edges, job, result.view, context.execution);
+    }
     result.timings.shade += watch.milliseconds();
     const std::optional<glm::vec3>& background = job.output.background;
     if (background && (picture ? nothing_stands_out(*picture, visible.primitives, *background)
@@ -263,7 +274,7 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
   const auto deep = [&] { return context.shader.shade_deep(input(), options, context.execution); };
   if (job.output.reference) result.reference = compare_with_reference(*picture, job, context.execution);
   write_files({job, context.execution, map, picture, bitmap, deep}, result);
-  if (context.keep_picture && picture) result.picture = context.shader.take();
+  if (context.keep_picture && picture) result.picture = with_edges ? std::move(*with_edges) : context.shader.take();
 }
 
 }  // namespace frontmost::cli

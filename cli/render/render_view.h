@@ -10,6 +10,7 @@
 // triangles made for the view. All end in finish_view(), or write their files alike.
 #pragma once
 
+#include <frontmost/lines.h>
 #include <frontmost/pictures.h>
 #include <frontmost/raycast.h>
 #include <frontmost/scene.h>
@@ -108,6 +109,7 @@ struct Sights {
   const std::vector<PrimitiveId>* stream_ids = nullptr;
   const Visible* seen_by_light = nullptr;
   const BlankReason* blank_reason = nullptr;  ///< counted during the stream's passes; borrowed
+  std::optional<Strokes> edges;               ///< with --edges: the visible edges
 
   [[nodiscard]] const SeenView& for_maps() const { return shared ? *picture : *maps; }
   /// Returns the input of the shader. Precondition: there is a picture.

@@ -85,6 +85,25 @@ struct FigureOptions {
 [[nodiscard]] Figure draw_figure(Shader& shader, const ShadeInput& input, const FigureOptions& options = {},
                                  const Execution& execution = {});
 
+// Edges over pictures: the strokes of a drawing, over an image of the same view.
+//
+//   shade() ---------------------------------> Image ----+
+//   draw_lines() --chain_strokes()--> Strokes ----------+--draw_strokes()--> the image with edges
+
+/// A round pen for pictures.
+struct PicturePen {
+  double width = 1.2;           ///< pixels, 0.1 to 1000
+  glm::vec3 color{0.1f};        ///< sRGB, 0 to 1
+  Blend blend = Blend::linear;  ///< how pixels that are partly ink are blended
+};
+
+/// Draws strokes over a picture, in the pixels of its view. A pixel's ink follows from the distance of its centre from
+/// the nearest stroke, so rims are smooth, and strokes that meet or cross have no seams. `picture` has planes of floats
+/// R, G and B, in linear light, premultiplied by A if it has that. O(pixels near strokes), in parallel; the same to the
+/// bit for any number of threads. \throws Error bad_argument for such an image without colours, for a pen out of
+/// range, and for strokes with arcs.
+void draw_strokes(Image& picture, const Strokes& strokes, const PicturePen& pen = {}, const Execution& execution = {});
+
 // Pages: pen lines and filled polygons in millimetres, written as SVG, PDF, DXF or JSON.
 //
 // A page has x to the right and y down, from its top left corner. Later elements lie over earlier ones.

@@ -360,8 +360,8 @@ class Surfaces:
         objects that sections leave whole; None: fasteners, shafts and balls. page: "a4", "a3-landscape", ..., or (width,
         height). pen, margin, hatch, stipple, shortest_stroke: millimetres. scale: paper to model.
         millimetres_per_unit: unit of the model's coordinates, in place of the file's. in_inches: unit of dimensions, by
-        default True for models in inches. title_block: title, number, author, date, owner. hatch_angle, crease_angle:
-        degrees. plot: strokes in an order for plotters.
+        default True for models in inches. title_block: title, number, author, date, owner. hatch_angle, crease_angle: degrees. plot: strokes for plotters, joined, in an
+        order, and none in the ink of others.
         Raises Error: bad_argument, limit_exceeded.
         """
     def draw_figure(self, view: View, *, tolerance: float = 6.0, visible_only: bool = True,
@@ -1051,6 +1051,13 @@ class Drawing:
     element for each part, in the order of edges; every access makes a new array."""
     def sheet(self, *, hidden: Hidden = "none", style: Style = "figure") -> Sheet:
         """The lines on a page as large as the view, at 96 pixels to an inch, for files and notebooks."""
+    def draw_over(self, picture: ArrayLike, *, width: float = 1.2, color: ArrayLike = (0.1, 0.1, 0.1),
+                  blend: Literal["linear", "srgb"] = "linear", threads: int = 0, progress: Progress = None) -> Bitmap:
+        """A picture of the same view with the seen edges over it.
+
+        picture: what Visible.shade_linear() returns. width: pixels, 0.1 to 1000. color: sRGB, 0 to 1. Raises Error
+        bad_argument.
+        """
     @property
     def view(self) -> View:
         """The view that was given."""
@@ -1105,6 +1112,9 @@ class Sheet:
     @property
     def prisms(self) -> int:
         """Number of cylinders of 7 to 17 sides, which count as prisms and have no diameter."""
+    @property
+    def covered(self) -> int:
+        """Number of strokes left out by plot because they lie within half the width of seen lines from others."""
 
 class Figure:
     """A picture of polygons, filled one after the other. Notebooks display it."""

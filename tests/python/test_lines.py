@@ -56,6 +56,37 @@ def test_drawings_show_themselves(crate_behind_wall, tmp_path):
         drawing.sheet(hidden="dotted")
 
 
+def test_edges_over_a_picture_are_the_command_lines(cli):
+    folder = cli("render", "builtin:cubes", "--resolution", "160,90", "--edges", "--edge-width", "1.5", "-o", "edges.png", "-q")
+    surfaces = fm.Surfaces(fm.builtin("cubes"))
+    view = fm.frame(surfaces, 160, 90, samples=4)
+    edges = surfaces.draw_lines(view)
+    picture = surfaces.zbuffer(view).shade_linear()
+    drawn = edges.draw_over(picture, width=1.5)
+    planes = fm.load_image(folder / "edges.png")
+    fm.save(drawn, folder / "drawn.png")
+    own = fm.load_image(folder / "drawn.png")
+    assert all(numpy.array_equal(planes[name], own[name]) for name in "RGB")
+    assert not numpy.array_equal(drawn, surfaces.zbuffer(view).shade())
+    with pytest.raises(fm.Error, match="width"):
+        edges.draw_over(picture, width=0)
+    with pytest.raises(ValueError, match="^picture: "):
+        edges.draw_over(picture[:, :, :3])
+
+
+def test_plots_count_the_strokes_in_the_ink_of_others(box):
+    vertices, faces = box
+    scene = fm.Scene.from_arrays(vertices * [20, 20, 0.1], faces)
+    for height in (0.2, 0.4):  # plates in a pile
+        pose = numpy.eye(4)
+        pose[2, 3] = height
+        scene.add(vertices * [20, 20, 0.1], faces, pose=pose)
+    surfaces = fm.Surfaces(scene)
+    assert surfaces.draw_sheet(["top"], scale=1, plot=True).covered > 0
+    assert surfaces.draw_sheet(["top"], scale=1, plot=True, pen=0.2).covered == 0
+    assert surfaces.draw_sheet(["top"], scale=1).covered == 0
+
+
 def test_sheets_are_the_command_lines_files(cli):
     folder = cli("lines", "builtin:cubes", "--views", "front,top,left,iso", "--hidden", "dashed", "-o", "sheet.svg", "-q")
     surfaces = fm.Surfaces(fm.builtin("cubes"))
