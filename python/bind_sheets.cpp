@@ -106,7 +106,7 @@ HeldPage sheet_of(const std::shared_ptr<HeldSurfaces>& held, const py::object& v
                   const std::optional<double>& shortest_stroke, const std::optional<bool>& centre_lines, bool plot,
                   const py::object& page, double margin, const std::optional<double>& scale,
                   const std::optional<bool>& standard_scale, const std::optional<double>& millimetres_per_unit,
-                  const std::optional<bool>& in_inches,
+                  const std::optional<bool>& in_inches, bool inch_fractions,
                   const std::optional<std::map<std::string, std::string>>& title_block,
                   const std::optional<double>& hatch, const std::optional<double>& stipple, double hatch_angle,
                   const py::object& light, bool casts_shadows, bool keeps_picture, int threads,
@@ -132,6 +132,7 @@ HeldPage sheet_of(const std::shared_ptr<HeldSurfaces>& held, const py::object& v
   options.standard_scale = standard_scale;
   options.millimetres_per_unit = millimetres_per_unit;
   options.in_inches = in_inches;
+  options.inch_fractions = inch_fractions;
   options.title_block = title_of(title_block);
   options.hatch = hatch;
   options.stipple = stipple;
@@ -300,7 +301,8 @@ void bind_sheets(py::module_& m) {
            "style"_a = DrawingStyle::technical, "pen"_a = py::none(), "crease_angle"_a = py::none(),
            "shortest_stroke"_a = py::none(), "centre_lines"_a = py::none(), "plot"_a = false, "page"_a = py::none(),
            "margin"_a = 10.0, "scale"_a = py::none(), "standard_scale"_a = py::none(),
-           "millimetres_per_unit"_a = py::none(), "in_inches"_a = py::none(), "title_block"_a = py::none(), "hatch"_a = py::none(), "stipple"_a = py::none(), "hatch_angle"_a = 45.0,
+           "millimetres_per_unit"_a = py::none(), "in_inches"_a = py::none(), "inch_fractions"_a = false,
+           "title_block"_a = py::none(), "hatch"_a = py::none(), "stipple"_a = py::none(), "hatch_angle"_a = 45.0,
            "light"_a = py::none(), "casts_shadows"_a = true, "keeps_picture"_a = false, "threads"_a = 0,
            "progress"_a = py::none(), doc("Surfaces.draw_sheet"))
       .def("draw_figure", &figure_of, "view"_a, py::kw_only(), "tolerance"_a = 6.0, "visible_only"_a = true,

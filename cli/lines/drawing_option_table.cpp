@@ -137,9 +137,15 @@ constexpr Option drawing_options[] = {
      [](Settings& s, const Given& g) {
        s.drawing.sheet.millimetres_per_unit = length_units[g.choice<int>()].millimetres;
      }},
-    {"dimension-unit", 0, "mm|in",
-     "Unit of the dimensions on the sheet; by default in for models in inches, mm for others.", Group::drawing,
-     for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.in_inches = g.choice<int>() == 1; }},
+    {"dimension-unit", 0, "mm|in|in-fractions",
+     "Unit of the dimensions on the sheet; by default in for models in inches, mm for others. in-fractions: inches as "
+     "fractions down to 1/64, such as 1 7/8, or with decimals if more than 0.0005 inches off.",
+     Group::drawing, for_lines,
+     [](Settings& s, const Given& g) {
+       const int unit = g.choice<int>();
+       s.drawing.sheet.in_inches = unit != 0;
+       s.drawing.sheet.inch_fractions = unit == 2;
+     }},
     {"views", 0, "V,V,...",
      "Draw several views on one sheet, in parallel projection, aligned and at one scale: front, back, left, right, "
      "top, bottom, iso.",

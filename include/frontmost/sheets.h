@@ -412,6 +412,8 @@ struct SheetOptions {
   std::optional<double> millimetres_per_unit = std::nullopt;
   /// Unit of dimensions and title block: inches with three decimals, or millimetres with two. None: as the model's.
   std::optional<bool> in_inches = std::nullopt;
+  /// True: dimensions in inches within 0.0005 of a multiple of 1/64 are fractions, "1 7/8". Ignored in millimetres.
+  bool inch_fractions = false;
   /// A frame with this title block. Scale, unit, paper and projection are filled in.
   std::optional<TitleBlock> title_block = std::nullopt;
 

@@ -350,7 +350,8 @@ class Surfaces:
                    centre_lines: bool | None = None, plot: bool = False,
                    page: str | tuple[float, float] | None = None, margin: float = 10.0, scale: float | None = None,
                    standard_scale: bool | None = None, millimetres_per_unit: float | None = None,
-                   in_inches: bool | None = None, title_block: dict[str, str] | None = None, hatch: float | None = None,
+                   in_inches: bool | None = None, inch_fractions: bool = False,
+                   title_block: dict[str, str] | None = None, hatch: float | None = None,
                    stipple: float | None = None, hatch_angle: float = 45.0, light: ArrayLike | None = None,
                    casts_shadows: bool = True, keeps_picture: bool = False, threads: int = 0,
                    progress: Progress = None) -> Sheet:
@@ -360,7 +361,8 @@ class Surfaces:
         objects that sections leave whole; None: fasteners, shafts and balls. page: "a4", "a3-landscape", ..., or (width,
         height). pen, margin, hatch, stipple, shortest_stroke: millimetres. scale: paper to model.
         millimetres_per_unit: unit of the model's coordinates, in place of the file's. in_inches: unit of dimensions, by
-        default True for models in inches. title_block: title, number, author, date, owner. hatch_angle, crease_angle: degrees. plot: strokes for plotters, joined, in an
+        default True for models in inches; inch_fractions: as fractions down to 1/64 where exact to 0.0005. title_block:
+        title, number, author, date, owner. hatch_angle, crease_angle: degrees. plot: strokes for plotters, joined, in an
         order, and none in the ink of others.
         Raises Error: bad_argument, limit_exceeded.
         """

@@ -242,12 +242,16 @@ TEST_F(SheetsCommand, WhatTheFilesNumbersAreIsNotWhatTheSheetStates) {
   };
   write("metres.json", placed("1"));
   write("inches.json", placed("0.0254"));
+  write("fractions.json", placed("0.001190625"));  // 3/64 inches
   struct Case {
     const char *options, *unit, *width;  // for a box that is 40 wide
     bool overrules = false;
   };
   const Case cases[] = {{"box.obj", "mm", "40"},
                         {"box.obj --dimension-unit in", "in", "1.575"},
+                        {"box.obj --dimension-unit in-fractions", "in", "1.575"},
+                        {"box.obj --unit in --dimension-unit in-fractions", "in", "40"},
+                        {"fractions.json --dimension-unit in-fractions", "in", "1 7/8"},
                         {"box.obj --unit in", "in", "40"},
                         {"box.obj --unit in --dimension-unit mm", "mm", "1016"},
                         {"metres.json", "mm", "40000"},

@@ -87,6 +87,15 @@ def test_plots_count_the_strokes_in_the_ink_of_others(box):
     assert surfaces.draw_sheet(["top"], scale=1).covered == 0
 
 
+def test_dimensions_in_fractions_of_inches(box):
+    vertices, faces = box
+    surfaces = fm.Surfaces(fm.Scene.from_arrays(vertices, faces))  # of side 2
+    sheets = [surfaces.draw_sheet(["front"], scale=1, dimensions="overall", in_inches=True, inch_fractions=is_wanted,
+                                  millimetres_per_unit=unit * 25.4).svg for unit in (0.9375, 0.95) for is_wanted in (False, True)]
+    assert sheets[0] != sheets[1]  # 1.875, 1 7/8
+    assert sheets[2] == sheets[3]  # 1.9
+
+
 def test_sheets_are_the_command_lines_files(cli):
     folder = cli("lines", "builtin:cubes", "--views", "front,top,left,iso", "--hidden", "dashed", "-o", "sheet.svg", "-q")
     surfaces = fm.Surfaces(fm.builtin("cubes"))

@@ -176,6 +176,25 @@ TEST_F(DimensionsTest, StandTenMillimetresFromWhatTheyMeasure) {
   EXPECT_GT(high.x - low.x, 39.9);
 }
 
+TEST(DimensionText, IsAFractionOfAnInchWhereThatIsExactEnough) {
+  const NumberStyle style{3, true};
+  EXPECT_EQ(dimension_text(1.875, style), "1 7/8");
+  EXPECT_EQ(dimension_text(3 / 64.0, style), "3/64");
+  EXPECT_EQ(dimension_text(0.5, style), "1/2");
+  EXPECT_EQ(dimension_text(2, style), "2");
+  EXPECT_EQ(dimension_text(12 + 31 / 32.0, style), "12 31/32");
+  // 0.0005 inches are exact enough; more are not.
+  EXPECT_EQ(dimension_text(1.875 + 0.00049, style), "1 7/8");
+  EXPECT_EQ(dimension_text(1.875 - 0.00049, style), "1 7/8");
+  EXPECT_EQ(dimension_text(1.875 + 0.00051, style), "1.876");
+  EXPECT_EQ(dimension_text(1.99951, style), "2");
+  EXPECT_EQ(dimension_text(40 / 25.4, style), "1.575");
+  // Below 1/64, nothing is taken for 0.
+  EXPECT_EQ(dimension_text(0.0004, style), "0.0004");
+  EXPECT_EQ(dimension_text(0, style), "0");
+  EXPECT_EQ(dimension_text(1e15, style), dimension_text(1e15, 3));
+}
+
 TEST_F(DimensionsTest, NumbersAreInTheUnitOfTheDrawing) {
   Mesh mesh;
   add_box(mesh, {25.4f, 50.8f, 2.54f});

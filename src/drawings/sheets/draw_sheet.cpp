@@ -370,7 +370,7 @@ void add_dimensions(Sheet& sheet, const std::vector<PlannedView>& views, const s
   DimensionOptions numbers;
   const bool in_inches = is_in_inches(options, scene);
   numbers.numbers_per_unit = millimetres_per_unit(options, scene) / (in_inches ? inch : 1);
-  numbers.decimals = in_inches ? 3 : 2;
+  numbers.decimals = {in_inches ? 3 : 2, in_inches && options.inch_fractions};
   numbers.level = options.dimensions;
   const glm::dvec2 size(sheet.page.width, sheet.page.height);
   PageBox area{glm::dvec2(page_rim), size - page_rim};

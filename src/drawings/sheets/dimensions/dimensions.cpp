@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "rounds/found_rounds.h"
 #include "sheets/dimensions/obstacles.h"
@@ -518,16 +519,31 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
 void validate(const DimensionOptions& options) {
   if (!(options.numbers_per_unit > 0 && std::isfinite(options.numbers_per_unit)))
     throw Error(ErrorCode::bad_argument, "numbers_per_unit", "must be above 0 and finite");
-  if (options.decimals < 0 || options.decimals > 6)
+  if (options.decimals.most < 0 || options.decimals.most > 6)
     throw Error(ErrorCode::bad_argument, "decimals", "must be from 0 to 6");
   if (!(options.text_height >= 0.5 && options.text_height <= 100))
     throw Error(ErrorCode::bad_argument, "text_height", "must be from 0.5 to 100 millimetres");
 }
 
+/// The number as a whole number and a reduced fraction of 64ths. Empty if it is no such number, or is nearly 0.
+std::string fraction_text(double size) {
+  constexpr std::int64_t finest = 64;
+  constexpr double tolerance = 0.0005, most = 1e12;
+  if (!(size < most)) return "";
+  const std::int64_t parts = std::llround(size * finest), rest = parts % finest, common = std::gcd(rest, finest);
+  if (parts == 0 || std::abs(size - double(parts) / finest) > tolerance) return "";
+  const std::string whole = parts >= finest ? std::to_string(parts / finest) : "";
+  if (rest == 0) return whole;
+  const std::string fraction = std::to_string(rest / common) + "/" + std::to_string(finest / common);
+  return whole.empty() ? fraction : whole + " " + fraction;
+}
+
 }  // namespace
 
-std::string dimension_text(double number, int decimals) {
+std::string dimension_text(double number, const NumberStyle& style) {
   const double size = std::abs(number);
+  if (const std::string fraction = style.fractions ? fraction_text(size) : ""; !fraction.empty()) return fraction;
+  int decimals = style.most;
   // Below 1, three significant digits are as precise as two decimals above 1.
   if (size > 0 && size < 1) decimals = std::max(decimals, std::min(9, 2 - int(std::floor(std::log10(size)))));
   double unit = 1;

@@ -22,11 +22,19 @@ struct DimensionedView {
   glm::dvec2 taken{0};               ///< millimetres on the left and below that other marks occupy
 };
 
+/// How numbers are written.
+struct NumberStyle {
+  NumberStyle(int most_decimals = 2, bool with_fractions = false) : most(most_decimals), fractions(with_fractions) {}
+
+  int most;        ///< the most decimals, 0 to 6; numbers below 1 have three significant digits
+  bool fractions;  ///< true: numbers within 0.0005 of a multiple of 1/64 are fractions, "1 7/8"
+};
+
 struct DimensionOptions {
   Dimensioning level = Dimensioning::diameters;
   double numbers_per_unit = 1;  ///< numbers per unit of length of the scene; above 0
-  int decimals = 2;             ///< the most decimals, 0 to 6; small numbers have three significant digits
-  double text_height = 3.5;     ///< millimetres, as in TextStyle
+  NumberStyle decimals{};
+  double text_height = 3.5;  ///< millimetres, as in TextStyle
 };
 
 /// The overall sizes of a view.
@@ -43,9 +51,10 @@ struct OverallSizes {
 /// Millimetres that sizes and positions occupy on the left of the view and below it, in addition to other marks.
 [[nodiscard]] glm::dvec2 room_for(const OverallSizes& sizes, bool has_positions, double text_height);
 
-/// The text of a number, without trailing zeros, with at most `decimals` decimals or three significant digits,
-/// whichever is more. If a half would have to be rounded, the text has one more digit: "50", "12.7", "1.875".
-[[nodiscard]] std::string dimension_text(double number, int decimals);
+/// The text of a number, without trailing zeros, with at most so many decimals or three significant digits, whichever
+/// is more. If a half would have to be rounded, the text has one more digit: "50", "12.7", "1.875". Fractions are
+/// reduced: "1 7/8", "3/64", "2".
+[[nodiscard]] std::string dimension_text(double number, const NumberStyle& style);
 
 struct Dimensions {
   PageLayer layer{"7 dimensions"};  ///< one group of lines and one of texts, both without names
