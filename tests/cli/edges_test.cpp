@@ -44,10 +44,11 @@ TEST_F(Edges, AreDarkAndChangeNothingElse) {
                       after = edges.channels[c].floats()[std::size_t(y * 64 + x)];
           const int out = std::max({27 - x, x - 36, 27 - y, y - 36});  // 0 and 1: the pixels on both sides of an edge
           const bool is_at_corner = (x < 27 || x > 36) && (y < 27 || y > 36);
-          if (out < -1 || out > 2)
+          if (out < -1 || out > 2) {
             EXPECT_EQ(after, before) << x << " " << y;
-          else if ((out == 0 || out == 1) && !is_at_corner)
+          } else if ((out == 0 || out == 1) && !is_at_corner) {
             EXPECT_LT(after, 0.0101f) << x << " " << y;
+          }
         }
   }
 }
@@ -73,6 +74,20 @@ TEST_F(Edges, AreStrokesOverTheShapesOfFigures) {
   EXPECT_THAT(read("iso.svg"), HasSubstr("stroke-width=\".794\""));
   succeed("render cube.stl --view iso --camera-orthographic -o plain.svg --quiet");
   EXPECT_THAT(read("plain.svg"), testing::Not(HasSubstr("edges")));
+}
+
+TEST_F(Edges, OfSeveralModelsHideBehindEachOther) {
+  // A wall of 3 by 3, before the cube and in front of all of it.
+  write("wall.obj", "v -1 -1 -1\nv 2 -1 -1\nv 2 -1 2\nv -1 -1 2\nf 1 2 3 4\n");
+  const std::string options = render_cube.substr(render_cube.find("--")) + "--edges --quiet -o ";
+  succeed("render wall.obj " + options + "wall.svg");
+  succeed("render cube.stl wall.obj " + options + "both.svg");
+  EXPECT_EQ(edge_paths("wall.svg"), 1u);
+  const auto edges = [&](const std::string& file) { return read(file).substr(read(file).find("\"edges\"")); };
+  EXPECT_EQ(edges("both.svg"), edges("wall.svg"));
+  write("other.stl", cube_stl(1));
+  succeed("render cube.stl other.stl --edges --quiet -o two.svg");
+  EXPECT_GT(edge_paths("two.svg"), 9u);
 }
 
 TEST_F(Edges, StandOnTransparentGroundAndInOtherFormats) {

@@ -195,10 +195,11 @@ TEST(PlotterInk, CoversWhatSamplesSayThatItCovers) {
           if (glm::distance(other[0], other[1]) > length) nearest = std::min(nearest, distance(p, other[0], other[1]));
         farthest = std::max(farthest, nearest);
       }
-      if (stays)
+      if (stays) {
         EXPECT_GT(farthest, reach - 1e-2) << seed;
-      else
+      } else {
         EXPECT_LT(farthest, reach + 1e-9) << seed;
+      }
     }
   }
 }
