@@ -44,7 +44,7 @@ void check_edges(const Settings& settings, const Job& job) {
 }
 
 Strokes edges_of(const RenderContext& context, const View& view) {
-  const Drawing drawing = draw_lines(context.surfaces, view, {}, context.execution);
+  const Drawing drawing = draw_lines(context.surfaces, view, {.ripples = false}, context.execution);
   const StrokeOptions strokes{.with_hidden = false, .by_kind = false, .by_outline = false, .by_instance = false};
   return chain_strokes(context.surfaces, drawing, strokes, context.execution);
 }
