@@ -178,7 +178,7 @@ constexpr Option drawing_options[] = {
     {"dimensions", 0, "overall|diameters|holes|all",
      "Write dimensions on a sheet of --views, each once, in the --dimension-unit. overall: width, height and depth. "
      "diameters: also those of circles. holes: also the positions of circles, from the lower left corner of the view. "
-     "all: also the radii of fillets.",
+     "all: also the radii of fillets, depths of blind holes, positions of steps and widths across flats.",
      Group::drawing, for_lines,
      [](Settings& s, const Given& g) { s.drawing.sheet.dimensions = Dimensioning(1 + g.choice<int>()); }},
     {"plot", 0, "",

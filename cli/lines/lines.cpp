@@ -153,14 +153,11 @@ void warn_of(const Sheet& sheet, const Surfaces& surfaces, const Settings& setti
   if (const auto covered = covered_warning(sheet)) warn({*covered});
   if (sheet.left_out > 0)
     warn(
-        {fmt::format("{} diameters and positions are left out for lack of room (a sheet has 64 diameters at most); use "
-                     "a larger --page "
-                     "or fewer views",
+        {fmt::format("{} diameters and positions are left out for lack of room (a sheet has 64 diameters at most, a "
+                     "row 24 steps); use a larger --page or fewer views",
                      sheet.left_out)});
   if (sheet.undrawn > 0)
-    warn(
-        {fmt::format("cylinders without a diameter, because none of their lines is drawn: {}{}", sheet.undrawn,
-                     settings.drawing.sheet.hidden == HiddenLines::none ? "; --hidden dashed draws hidden ones" : "")});
+    warn({fmt::format("cylinders without a diameter, because no view along their axis shows them: {}", sheet.undrawn)});
   if (sheet.prisms > 0)
     warn({fmt::format("cylinders of 7 to 17 sides count as prisms and get no diameter: {}", sheet.prisms)});
 }

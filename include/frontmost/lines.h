@@ -367,6 +367,18 @@ struct Round {
   double turn = 0;                     ///< radians, at most 2 pi: the part of the circle that exists
   bool is_hollow = false;              ///< cylinders: the material lies outside, as around a bore
   std::uint32_t first = 0, count = 0;  ///< range of Rounds::triangles
+  /// Above 0 for a blind hole, which is open at `from` and closed at `to`: the length of its wall, and of a conical
+  /// chamfer before it. Whether a floor is flat or a cone does not matter. 0 for all other rounds.
+  double depth = 0;
+};
+
+/// Plane faces about an axis, as of a nut or of a hexagon socket: a regular polygon.
+struct Flats {
+  glm::dvec3 from{0}, to{0};           ///< ends of the axis, world space
+  glm::dvec3 side{1, 0, 0};            ///< normal of one of the faces, unit length
+  double width = 0;                    ///< across flats: between opposite faces
+  std::uint32_t sides = 6;             ///< 6, or 4: squares only if a circle or cylinder lies about their axis
+  std::uint32_t first = 0, count = 0;  ///< range of Rounds::triangles
 };
 
 /// An arc of sharp edges, as at a fillet or a rounded corner.
@@ -378,12 +390,13 @@ struct CircleArc {
 
 struct Rounds {
   std::vector<Round> rounds;
-  /// For each round, the triangles with an edge on its circle, or the triangles of its surface. Rounds come in order,
-  /// and the triangles of one round ascend.
+  /// For each round, the triangles with an edge on its circle, or the triangles of its surface; then those of the flats.
+  /// Rounds and flats come in order, and the triangles of one ascend.
   std::vector<PrimitiveId> triangles;
   /// Cylinders of 7 to 17 sides with a sharp rim at either end. They count as polygons: nothing is drawn for them.
   std::vector<Round> prisms;
   std::vector<CircleArc> arcs;  ///< circles of which 40 to 160 degrees exist
+  std::vector<Flats> flats;     ///< hexagons, whether they are holes or not, and outer squares
 };
 
 // The rules of find_rounds():
@@ -396,6 +409,9 @@ struct Rounds {
 //   cylinder that begins at a circle may have vertices within its sides, where something else cuts it.
 // - Surfaces of revolution are smooth, go all the way round, and have their vertices in rings of 18 or more: tori,
 //   domes, cones. Cylinders are separate, and whole spheres, which have no axis of their own, are left out.
+// - A hole is blind if what adjoins one end of its wall lies within its radius, and what adjoins the other end lies
+//   outside of it. Holes of one axis and radius that follow each other, as around a groove, have one depth.
+// - Flats are plane faces that meet each other at 60 or 90 degrees in edges along one axis.
 
 /// Finds the circles and cylinders of which at least 160 degrees exist, and other surfaces of revolution. The time is
 /// near-linear. \throws Error limit_exceeded for more than 2^29 triangles.

@@ -366,7 +366,7 @@ enum class Dimensioning : std::uint8_t {
   overall,    ///< width, height and depth
   diameters,  ///< diameters of circles and cylinders that are seen along their axes
   holes,      ///< positions of these, from the lower left corner of their view
-  all,        ///< radii of fillets and other arcs that are seen along their axes
+  all,        ///< radii of arcs, depths of blind holes, positions of plane faces, widths across flats
 };
 
 /// Options of sheets. Millimetres are on paper.
@@ -450,7 +450,7 @@ struct Sheet {
   std::vector<DrawnView> views;  ///< whole views, then sections, in their order
   bool is_empty = false;         ///< no line of the model is on the sheet
   std::size_t left_out = 0;      ///< number of diameters, radii and positions without room
-  std::size_t undrawn = 0;       ///< number of diameters of cylinders seen along their axes, but hidden and not drawn
+  std::size_t undrawn = 0;       ///< number of diameters of cylinders seen along their axes, but hidden
   std::size_t prisms = 0;        ///< number of diameters of cylinders of 7 to 17 sides, which count as polygons
 };
 

@@ -4,8 +4,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
+#include <map>
 #include <memory>
 #include <numbers>
 
@@ -92,7 +97,8 @@ class DimensionsTest : public testing::Test {
 
   [[nodiscard]] std::vector<DimensionedView> views() const {
     std::vector<DimensionedView> all;
-    for (std::size_t i = 0; i < sheets_.size(); ++i) all.push_back({&sheets_[i], &drawings_[i], &rounds_});
+    for (std::size_t i = 0; i < sheets_.size(); ++i)
+      all.push_back({&sheets_[i], &drawings_[i], &rounds_, surfaces_.get()});
     return all;
   }
 
@@ -106,6 +112,62 @@ class DimensionsTest : public testing::Test {
   std::vector<SheetView> sheets_;
   std::vector<Drawing> drawings_;
 };
+
+/// The texts among the paths of a group, in their order, as far as `known` has them; "?" for each other path. Texts are
+/// recognised by the lengths and bulges of their strokes and by the distances between them, in any direction. Sets the
+/// first point of each text.
+std::vector<std::string> texts_of(const PageGroup& drawn, std::vector<std::string> known,
+                                  std::vector<glm::dvec2>* begins = nullptr) {
+  const auto signature = [](const PageGroup& group, std::size_t path) {
+    const PagePath& p = group.paths[path];
+    std::vector<double> values;
+    for (std::uint32_t i = p.first; i + 1 < p.first + p.count; ++i) {
+      values.push_back(glm::distance(group.points[i], group.points[i + 1]));
+      values.push_back(group.bulges.empty() ? 0 : group.bulges[i]);
+    }
+    return values;
+  };
+  const auto are_near = [](double a, double b) { return std::abs(a - b) < 1e-4; };
+  const auto is_at = [&](const PageGroup& text, std::size_t begin) {
+    if (begin + text.paths.size() > drawn.paths.size()) return false;
+    const auto start = [](const PageGroup& group, std::size_t path) { return group.points[group.paths[path].first]; };
+    for (std::size_t i = 0; i < text.paths.size(); ++i) {
+      const std::vector<double> a = signature(text, i), b = signature(drawn, begin + i);
+      if (!std::equal(a.begin(), a.end(), b.begin(), b.end(), are_near)) return false;
+      if (!are_near(glm::distance(start(text, i), start(text, 0)),
+                    glm::distance(start(drawn, begin + i), start(drawn, begin))))
+        return false;
+    }
+    return true;
+  };
+  std::sort(known.begin(), known.end(), [](const std::string& a, const std::string& b) {
+    return a.size() > b.size() || (a.size() == b.size() && a < b);
+  });
+  std::vector<std::string> found;
+  for (std::size_t at = 0; at < drawn.paths.size();) {
+    std::size_t length = 1;
+    std::string name = "?";
+    for (const std::string& text : known) {
+      PageGroup group;
+      add_text(group, text, {0, 0});
+      if (!is_at(group, at)) continue;
+      length = group.paths.size();
+      name = text;
+      break;
+    }
+    found.push_back(name);
+    if (begins != nullptr) begins->push_back(drawn.points[drawn.paths[at].first]);
+    at += length;
+  }
+  return found;
+}
+
+/// Expects exactly these numbers, in any order.
+void expect_texts(const Dimensions& all, const std::vector<std::string>& expected) {
+  ASSERT_EQ(all.layer.groups.size(), 2u);
+  EXPECT_THAT(texts_of(all.layer.groups[1], expected), testing::UnorderedElementsAreArray(expected));
+  EXPECT_EQ(all.count, expected.size());
+}
 
 /// Number of arrowheads, which are the closed paths among the lines.
 std::size_t arrows_of(const Dimensions& all) {
@@ -340,10 +402,7 @@ TEST_F(DimensionsTest, WhatIsNotDrawnIsCounted) {
   add_peg(mesh, {60, 30, 5}, 3, 8);
   scene_ = scene_of(mesh);
   draw({NamedView::front, NamedView::top});
-  EXPECT_EQ(dimensioned().undrawn, 0u);
-  std::vector<DimensionedView> seen = views();
-  for (DimensionedView& view : seen) view.with_hidden = false;
-  const Dimensions all = place_dimensions(seen, {{0, 0}, {1000, 1000}}, {});
+  const Dimensions all = dimensioned();
   EXPECT_EQ(all.count, 3u);
   EXPECT_EQ(all.undrawn, 2u);
   EXPECT_EQ(all.left_out, 0u);
@@ -372,9 +431,9 @@ TEST_F(DimensionsTest, NothingLiesOnANumber) {
   for (int i = 0; i < 12; ++i) add_peg(mesh, {8 + 7.5 * i, 10 + 37 * (i % 2), 10}, 1 + 0.2f * float(i), 8);
   scene_ = scene_of(mesh);
   draw({NamedView::front, NamedView::top});
-  for (const Dimensioning level : {Dimensioning::diameters, Dimensioning::holes}) {
+  for (const Dimensioning level : {Dimensioning::diameters, Dimensioning::holes, Dimensioning::all}) {
     const Dimensions all = dimensioned({.level = level});
-    EXPECT_GE(all.count, level == Dimensioning::holes ? 20u : 10u);
+    EXPECT_GE(all.count, level == Dimensioning::diameters ? 10u : 20u);
     detail::Obstacles obstacles({{0, 0}, {1000, 1000}});
     for (const SheetView& sheet : sheets_) obstacles.add(sheet);
     const PageGroup &drawn = all.layer.groups.at(0), &texts = all.layer.groups.at(1);
@@ -383,6 +442,306 @@ TEST_F(DimensionsTest, NothingLiesOnANumber) {
     for (const PagePath& path : texts.paths)
       for (std::uint32_t i = path.first; i < path.first + path.count; ++i)
         EXPECT_TRUE(obstacles.is_free({texts.points[i] - 0.3, texts.points[i] + 0.3})) << i;
+  }
+}
+
+/// Points around an axis along z at equal angles: on a circle, a square or a hexagon with this radius of its inscribed
+/// circle.
+struct Ring {
+  double radius, z;
+  int corners = 0;  ///< 0: a circle; 4 or 6
+};
+
+/// A surface through rings from first to last, about (x, y, 0). It is closed if it begins and ends with rings of radius
+/// 0. The outside is on the left of the way from ring to ring, with the axis on the left of the page.
+void add_rings(
+    Mesh& mesh, const glm::dvec2& axis, const std::vector<Ring>& rings, int sides = 48,
+    const std::function<bool(int)>& is_wanted = [](int) { return true; }) {
+  const auto at = [&](const Ring& ring, int k) {
+    const double angle = 2 * std::numbers::pi * (k % sides) / sides;
+    double radius = ring.radius;
+    if (ring.corners > 0) {
+      const double sector = 2 * std::numbers::pi / ring.corners;
+      radius /= std::cos(std::remainder(angle, sector));
+    }
+    return glm::vec3(axis.x + radius * std::cos(angle), axis.y + radius * std::sin(angle), ring.z);
+  };
+  for (std::size_t i = 0; i + 1 < rings.size(); ++i)
+    for (int k = 0; k < sides; ++k) {
+      if (rings[i].corners == 4 && rings[i + 1].corners == 4 && !is_wanted(k)) continue;
+      if (rings[i].radius > 0) add_triangle(mesh, at(rings[i], k), at(rings[i], k + 1), at(rings[i + 1], k));
+      if (rings[i + 1].radius > 0)
+        add_triangle(mesh, at(rings[i], k + 1), at(rings[i + 1], k + 1), at(rings[i + 1], k));
+    }
+}
+
+/// A plate 20 high and 30 deep, of one square cell for each profile. A profile leads from the upper face into a hole or
+/// up a pin, to the axis or to the lower face.
+void add_plate(Mesh& mesh, const std::vector<std::vector<Ring>>& profiles) {
+  for (std::size_t i = 0; i < profiles.size(); ++i) {
+    std::vector<Ring> rings{{15, 0, 4}, {15, 20, 4}};
+    rings.insert(rings.end(), profiles[i].begin(), profiles[i].end());
+    if (rings.back().radius > 0) rings.push_back({15, 0, 4});
+    const bool is_first = i == 0, is_last = i + 1 == profiles.size();
+    // Sides 0 to 5 and 42 to 47 face +x, and 18 to 29 face -x. Neighbours have no wall between them.
+    const auto is_wanted = [&](int k) { return k < 6 || k >= 42 ? is_last : k >= 18 && k < 30 ? is_first : true; };
+    add_rings(mesh, {15 + 30.0 * double(i), 15}, rings, 48, is_wanted);
+    if (rings.back().radius == 0) add_rings(mesh, {15 + 30.0 * double(i), 15}, {{0, 0}, {15, 0, 4}});
+  }
+}
+
+const std::vector<Ring> blind_hole{{5, 20}, {5, 8}, {0, 8}}, drilled_hole{{5, 20}, {5, 8}, {0, 5}};
+const std::vector<Ring> chamfered_hole{{5.5, 20}, {5, 19.5}, {5, 8}, {0, 8}}, shallow_hole{{5, 20}, {5, 14}, {0, 14}};
+const std::vector<Ring> through_hole{{5, 20}, {5, 0}}, counterbore{{8, 20}, {8, 15}, {4, 15}, {4, 0}};
+const std::vector<Ring> grooved_hole{{7, 20}, {7, 14}, {9, 14}, {9, 11}, {7, 11}, {7, 4}, {0, 4}};
+const std::vector<Ring> pin{{6, 20}, {6, 28}, {0, 28}};
+
+// Up is +y, so that the view from the front looks down on the plate.
+constexpr NamedView above = NamedView::front, below = NamedView::back, beside = NamedView::bottom;
+
+TEST_F(DimensionsTest, BlindHolesHaveDepths) {
+  Mesh mesh;
+  add_plate(mesh, {blind_hole, drilled_hole, chamfered_hole, shallow_hole, through_hole, counterbore, pin});
+  scene_ = scene_of(mesh);
+  draw({beside, above});
+  std::vector<std::string> expected = {
+      "210",     "28",      "30", "20", "15", "45", "75", "105", "135", "165", "195", "15", "\u230016\u21a75",
+      "\u23008", "\u230012"};
+  for (const char* const bore : {"3\u00d7\u230010\u21a712", "\u230010\u21a76", "\u230010"}) expected.push_back(bore);
+  const Dimensions all = dimensioned({.level = Dimensioning::all});
+  expect_texts(all, expected);
+  EXPECT_EQ(all.left_out + all.undrawn, 0u);
+  // Lower levels have no depths, and unite equal diameters.
+  const Dimensions lower = dimensioned({.level = Dimensioning::diameters});
+  expect_texts(lower, {"210", "28", "30", "5\u00d7\u230010", "\u230016", "\u23008", "\u230012"});
+}
+
+TEST_F(DimensionsTest, DepthsAreThoseOfWalls) {
+  Mesh mesh;
+  add_plate(mesh, {blind_hole, drilled_hole, chamfered_hole, through_hole, counterbore, grooved_hole, pin});
+  scene_ = scene_of(mesh);
+  draw({above});
+  std::vector<std::pair<double, double>> found;  // radius and depth
+  for (const Round& round : rounds_.rounds) {
+    EXPECT_TRUE(round.depth == 0 || round.kind == RoundKind::cylinder);
+    if (round.depth == 0) continue;
+    found.emplace_back(std::round(1000 * round.radius) / 1000, std::round(1000 * round.depth) / 1000);
+    EXPECT_LT(round.axis.z, -0.999) << "from the open end to the closed one";
+    EXPECT_GT(round.from.z, round.to.z);
+  }
+  // The groove is closed at both ends by plane faces that lead inwards: it has no depth.
+  EXPECT_THAT(found, testing::UnorderedElementsAre(std::pair(5., 12.), std::pair(5., 12.), std::pair(5., 12.),
+                                                   std::pair(8., 5.), std::pair(7., 16.)));
+}
+
+TEST_F(DimensionsTest, HiddenCirclesHaveNoLeaders) {
+  Mesh mesh;
+  add_plate(mesh, {blind_hole, through_hole, counterbore, pin});
+  scene_ = scene_of(mesh);
+  // From below, only the through holes are seen.
+  draw({below});
+  const Dimensions seen = dimensioned({.level = Dimensioning::all});
+  expect_texts(seen, {"120", "30", "45", "75", "15", "\u230010", "\u23008"});
+  EXPECT_EQ(seen.undrawn, 3u) << "a blind hole, a counterbore and a pin";
+  // Another view shows the others.
+  draw({below, above});
+  const Dimensions all = dimensioned({.level = Dimensioning::all});
+  expect_texts(all, {"120", "30", "45", "75", "15", "\u230010", "\u23008", "15", "75", "105", "15", "\u230010\u21a712",
+                     "\u230016\u21a75", "\u230012"});
+  EXPECT_EQ(all.undrawn, 0u);
+}
+
+TEST_F(DimensionsTest, HolesThatFaceEachOtherDiffer) {
+  Mesh mesh;
+  // A plate with holes of depth 6 from above and 8 from below.
+  add_rings(mesh, {0, 0}, {{15, 0, 4}, {15, 20, 4}, {5, 20}, {5, 14}, {0, 14}});
+  add_rings(mesh, {0, 0}, {{0, 8}, {5, 8}, {5, 0}, {15, 0, 4}});
+  scene_ = scene_of(mesh);
+  draw({above, below});
+  expect_texts(dimensioned({.level = Dimensioning::all}),
+               {"30", "30", "15", "15", "15", "15", "\u230010\u21a76", "\u230010\u21a78"});
+  draw({above});
+  EXPECT_EQ(dimensioned({.level = Dimensioning::all}).undrawn, 1u);
+}
+
+/// A solid of the filled cells of a grid.
+void add_cells(Mesh& mesh, const std::array<std::vector<double>, 3>& places,
+               const std::function<bool(int, int, int)>& is_filled) {
+  const auto size = [&](int axis) { return int(places[std::size_t(axis)].size()) - 1; };
+  const auto filled = [&](const glm::ivec3& c) {
+    for (int axis = 0; axis < 3; ++axis)
+      if (c[axis] < 0 || c[axis] >= size(axis)) return false;
+    return is_filled(c.x, c.y, c.z);
+  };
+  const auto at = [&](const glm::ivec3& c) {
+    return glm::vec3(places[0][std::size_t(c.x)], places[1][std::size_t(c.y)], places[2][std::size_t(c.z)]);
+  };
+  for (int x = 0; x < size(0); ++x)
+    for (int y = 0; y < size(1); ++y)
+      for (int z = 0; z < size(2); ++z)
+        for (int axis = 0; axis < 3; ++axis)
+          for (const int side : {0, 1}) {
+            const glm::ivec3 cell(x, y, z);
+            glm::ivec3 next = cell, u(0), v(0), corner = cell;
+            next[axis] += side == 1 ? 1 : -1;
+            if (!filled(cell) || filled(next)) continue;
+            corner[axis] += side;
+            u[(axis + (side == 1 ? 1 : 2)) % 3] = 1;
+            v[(axis + (side == 1 ? 2 : 1)) % 3] = 1;
+            add_triangle(mesh, at(corner), at(corner + u), at(corner + u + v));
+            add_triangle(mesh, at(corner), at(corner + u + v), at(corner + v));
+          }
+}
+
+/// Stairs of three steps: 40, 25 and 10 high.
+void add_stairs(Mesh& mesh) {
+  add_cells(mesh, {{{0, 30, 60, 100}, {0, 50}, {0, 10, 25, 40}}}, [](int x, int, int z) { return x + z < 3; });
+}
+
+TEST_F(DimensionsTest, StepsHavePositionsOnce) {
+  Mesh mesh;
+  add_stairs(mesh);
+  scene_ = scene_of(mesh);
+  const std::vector<std::string> expected{"100", "40", "50", "30", "60", "10", "25"};
+  draw({beside, above});
+  expect_texts(dimensioned({.level = Dimensioning::all}), expected);
+  // Nothing lies between the edges that the view from above shows and the row below the view.
+  EXPECT_EQ(position_rows_of(views(), Dimensioning::all),
+            (std::vector{glm::bvec2(false, true), glm::bvec2(true, false)}));
+  EXPECT_EQ(position_rows_of(views(), Dimensioning::holes), (std::vector{glm::bvec2(false), glm::bvec2(false)}));
+  EXPECT_EQ(dimensioned({.level = Dimensioning::holes}).count, 3u);
+  draw({beside, above, NamedView::left, NamedView::right, NamedView::top, below});
+  const Dimensions all = dimensioned({.level = Dimensioning::all});
+  expect_texts(all, expected);
+  EXPECT_EQ(all.left_out, 0u);
+}
+
+TEST_F(DimensionsTest, HolesAndStepsShareNumbers) {
+  Mesh mesh;
+  add_stairs(mesh);
+  add_peg(mesh, {60, 25, 25}, 4, 15);
+  add_peg(mesh, {80, 25, 10}, 4, 30);
+  scene_ = scene_of(mesh);
+  draw({beside, above});
+  expect_texts(dimensioned({.level = Dimensioning::all}),
+               {"100", "40", "50", "10", "25", "30", "60", "80", "25", "2\u00d7\u23008"});
+}
+
+TEST_F(DimensionsTest, StepsWithoutRoomAreCounted) {
+  Mesh mesh;
+  // A block with 10 ribs: all or none of 19 equal faces have numbers.
+  for (const double pitch : {12.0, 4.0}) {
+    mesh = {};
+    std::vector<double> places;
+    for (int i = 0; i < 20; ++i) places.push_back(pitch * (i / 2) + (i % 2) * pitch / 2);
+    add_cells(mesh, {{places, {0, 30}, {0, 10, 30}}}, [](int x, int, int z) { return z == 0 || x % 2 == 0; });
+    scene_ = scene_of(mesh);
+    draw({above, beside});
+    const Dimensions all = dimensioned({.level = Dimensioning::all});
+    const bool has_room = pitch > 10;
+    EXPECT_EQ(all.count, 3u + 1u + (has_room ? 18u : 0u)) << pitch;
+    EXPECT_EQ(all.left_out, has_room ? 0u : 18u) << pitch;
+  }
+}
+
+TEST_F(DimensionsTest, FacetsAreNoSteps) {
+  Mesh slab, peg;
+  add_rounded_slab(slab, {100, 60}, 7);
+  add_peg(peg, {0, 0, 10}, 8, 8, 40);
+  scene_ = scene_of(slab);
+  // Facets of the peg are parallel to the faces of the slab.
+  scene_.meshes.push_back(peg);
+  const glm::dmat4 turned = glm::rotate(glm::dmat4(1), std::numbers::pi / 40 - 0.03, glm::dvec3(0, 0, 1));
+  scene_.instances.push_back({"peg", 1, glm::translate(glm::dmat4(1), glm::dvec3(50, 30, 0)) * turned});
+  draw({beside, above, NamedView::left});
+  expect_texts(dimensioned({.level = Dimensioning::all}),
+               {"100", "60", "18", "10", "50", "30", "\u230016", "4\u00d7R7"});
+}
+
+TEST_F(DimensionsTest, CloseNumbersMoveAside) {
+  Mesh mesh;
+  add_cells(mesh, {{{0, 3, 10, 13, 60}, {0, 40}, {0, 10, 20}}}, [](int x, int, int z) { return z == 0 || x % 2 == 0; });
+  scene_ = scene_of(mesh);
+  draw({above, beside});
+  const Dimensions all = dimensioned({.level = Dimensioning::all});
+  expect_texts(all, {"60", "40", "20", "3", "10", "13", "10"});
+  // Numbers are at least their height and their distance apart.
+  std::vector<glm::dvec2> begins;
+  const std::vector<std::string> texts = texts_of(all.layer.groups[1], {"60", "40", "20", "3", "10", "13"}, &begins);
+  const double bottom = sheets_[0].on_page(bounds_of(drawings_[0], true).high).y;
+  std::map<std::string, double> places;
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    if (begins[i].y > bottom && begins[i].y < bottom + 30) places[texts[i]] = begins[i].x;
+  ASSERT_EQ(places.size(), 3u) << "numbers below the first view";
+  // The first strokes of these digits begin at about one height.
+  EXPECT_GT(places.at("10"), places.at("3") + 4.3);
+  EXPECT_GT(places.at("13"), places.at("10") + 4.3);
+}
+
+TEST_F(DimensionsTest, HexagonsHaveWidthsAcrossFlats) {
+  Mesh mesh;
+  add_box(mesh, {100, 60, 10});
+  // Heads of bolts with chamfers; the flats of the second one face left and right.
+  for (const double x : {30.0, 70.0})
+    add_rings(mesh, {x, 30}, {{0, 10}, {6.5, 10, 6}, {6.5, 15.5, 6}, {6.2, 16}, {0, 16}});
+  scene_ = scene_of(mesh);
+  draw({beside, above, NamedView::left});
+  ASSERT_EQ(rounds_.flats.size(), 2u);
+  for (const Flats& flats : rounds_.flats) {
+    EXPECT_NEAR(flats.width, 13, 1e-4);
+    EXPECT_EQ(flats.sides, 6u);
+    EXPECT_NEAR(flats.from.y, 30, 1e-4);
+    EXPECT_NEAR(glm::distance(flats.from, flats.to), 5.5, 1e-4);
+  }
+  expect_texts(dimensioned({.level = Dimensioning::all}), {"100", "60", "16", "10", "30", "70", "30", "2\u00d7AF 13"});
+  EXPECT_EQ(dimensioned({.level = Dimensioning::holes}).count, 3u + 1u + 3u) << "the chamfers' circles";
+}
+
+TEST_F(DimensionsTest, AWidthAcrossFlatsMayBeAnOverallSize) {
+  Mesh mesh;
+  add_rings(mesh, {0, 0}, {{0, 0}, {4, 0}, {4, 20}, {6.5, 20, 6}, {6.5, 26, 6}, {0, 26}});
+  scene_ = scene_of(mesh);
+  draw({beside, below});
+  // The hexagon is 13 wide and 15.01 deep.
+  expect_texts(dimensioned({.level = Dimensioning::all}), {"AF 13", "26", "20", "15.01", "7.51", "6.5", "\u23008"});
+}
+
+TEST_F(DimensionsTest, SquaresAboutAnAxisHaveWidthsAcrossFlats) {
+  for (const bool has_peg : {true, false}) {
+    Mesh mesh;
+    add_box(mesh, {100, 60, 10});
+    add_rings(mesh, {40, 30}, {{0, 10}, {10, 10, 4}, {10, 16, 4}, {0, 16}});
+    if (has_peg) add_peg(mesh, {40, 30, 16}, 4, 4);
+    scene_ = scene_of(mesh);
+    draw({beside, above});
+    if (has_peg)
+      expect_texts(dimensioned({.level = Dimensioning::all}),
+                   {"100", "60", "20", "10", "16", "40", "30", "AF 20", "\u23008"});
+    else
+      expect_texts(dimensioned({.level = Dimensioning::all}), {"100", "60", "16", "10", "30", "50", "20", "40"});
+  }
+}
+
+TEST_F(DimensionsTest, RingsOfAThreadHaveOneNumber) {
+  Mesh mesh;
+  add_box(mesh, {40, 40, 10});
+  std::vector<Ring> sharp{{0, 10}}, square{{0, 10}};
+  for (int i = 0; i < 12; ++i) {
+    sharp.insert(sharp.end(), {{4, 10 + 2.0 * i}, {5, 11 + 2.0 * i}});
+    square.insert(square.end(), {{4, 10 + 2.0 * i}, {4, 11 + 2.0 * i}, {5, 11 + 2.0 * i}, {5, 12 + 2.0 * i}});
+  }
+  for (std::vector<Ring>* const rings : {&sharp, &square}) rings->push_back({0, 34});
+  sharp.insert(sharp.end() - 1, {4, 34});
+  for (const bool is_square : {false, true}) {
+    Mesh part = mesh;
+    add_rings(part, {20, 20}, is_square ? square : sharp);
+    scene_ = scene_of(part);
+    draw({beside, above});
+    const Dimensions all = dimensioned({.level = Dimensioning::all});
+    std::vector<std::string> expected{"40", "34", "40", "10", "20", "20", "12\u00d7\u230010"};
+    if (!is_square) expected.push_back("13\u00d7\u23008");
+    expect_texts(all, expected);
+    EXPECT_EQ(all.left_out, is_square ? 23u : 0u) << "the flanks, which are a millimetre apart";
   }
 }
 

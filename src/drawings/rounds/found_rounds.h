@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Round shapes in a mesh: circles of sharp edges, cylinders of smooth surfaces, and other surfaces of revolution.
+// Round shapes in a mesh: circles of sharp edges, cylinders of smooth surfaces, and other surfaces of revolution; and
+// hexagons and squares of plane faces.
 //
 //    sharp edges --chains--> arcs --on one circle--> circles ------+
 //                                                                  v
 //    smooth neighbours ------------------------------> walls: cylinders that begin at circles, then the others
 //    other regions that close around an axis --------> surfaces of revolution
+//    plane faces that meet at 60 or 90 degrees ------> flats
 //
 // A polygon counts as a circle if its steps are alike and its corners lie on one to the precision of the file.
 #pragma once
@@ -152,6 +154,20 @@ struct FoundRound {
 /// then those that begin at two smooth neighbours; last those that something cuts between their ends. Each triangle
 /// belongs to at most one cylinder. O(triangles log triangles).
 [[nodiscard]] std::vector<FoundRound> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
+                                                 const Execution& execution);
+
+/// Sets Round::depth of blind holes, and turns these so that they begin at their open end. Linear in the walls'
+/// triangles; at most 4096 holes are compared with each other.
+void find_depths(const SmoothMesh& mesh, std::vector<FoundRound>& walls);
+
+/// Flats with their triangles of the mesh, in place of Flats::first.
+struct FoundFlats {
+  Flats flats;
+  std::vector<std::uint32_t> triangles;
+};
+
+/// The hexagons of a mesh, and the squares about the axes of rounds. Linear in the triangles.
+[[nodiscard]] std::vector<FoundFlats> find_flats(const SmoothMesh& mesh, std::span<const Round> rounds,
                                                  const Execution& execution);
 
 }  // namespace frontmost::lines_detail

@@ -220,17 +220,23 @@ std::vector<Round> find_prisms(const SmoothMesh& mesh, const Execution& executio
 constexpr double kLeastTurn = 160 * std::numbers::pi / 180, kLeastArc = 40 * std::numbers::pi / 180;
 constexpr double kOneArc = 0.9;  // pieces apart from each other add up to less than this share of one arc
 
-/// Appends a round, unless too little of it exists.
-void append(const FoundRound& found, const WeldedMesh& mesh, Rounds& all) {
-  if (found.round.turn < kLeastTurn) return;
+/// Appends a shape, with the ids of its triangles.
+template <class Shape>
+void append(Shape shape, std::span<const std::uint32_t> triangles, const WeldedMesh& mesh, std::vector<Shape>& shapes,
+            std::vector<PrimitiveId>& all_ids) {
   std::vector<PrimitiveId> ids;
-  for (const std::uint32_t t : found.triangles) ids.push_back(mesh.ids[t]);
+  for (const std::uint32_t t : triangles) ids.push_back(mesh.ids[t]);
   std::sort(ids.begin(), ids.end());
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  Round& round = all.rounds.emplace_back(found.round);
-  round.first = std::uint32_t(all.triangles.size());
-  round.count = std::uint32_t(ids.size());
-  all.triangles.insert(all.triangles.end(), ids.begin(), ids.end());
+  shape.first = std::uint32_t(all_ids.size());
+  shape.count = std::uint32_t(ids.size());
+  shapes.push_back(shape);
+  all_ids.insert(all_ids.end(), ids.begin(), ids.end());
+}
+
+/// Appends a round, unless too little of it exists.
+void append(const FoundRound& found, const WeldedMesh& mesh, Rounds& all) {
+  if (found.round.turn >= kLeastTurn) append(found.round, found.triangles, mesh, all.rounds, all.triangles);
 }
 
 /// Appends a circle of which too little exists for a round, unless its arcs are all around.
@@ -260,7 +266,9 @@ Rounds find_rounds(const Surfaces& surfaces, const Execution& execution) {
            mesh.mesh, all);
     append_arc(found, turn, all.arcs);
   }
-  for (const FoundRound& wall : find_walls(mesh, circles, execution)) append(wall, mesh.mesh, all);
+  std::vector<FoundRound> walls = find_walls(mesh, circles, execution);
+  find_depths(mesh, walls);
+  for (const FoundRound& wall : walls) append(wall, mesh.mesh, all);
   std::vector<bool> is_taken(mesh.mesh.triangles.size());
   RevolvedFinder finder{mesh};
   for (std::uint32_t t = 0; t < is_taken.size(); ++t) {
@@ -269,6 +277,8 @@ Rounds find_rounds(const Surfaces& surfaces, const Execution& execution) {
     if (const auto revolved = finder.find(region_from(t, mesh, is_taken))) append(*revolved, mesh.mesh, all);
   }
   all.prisms = find_prisms(mesh, execution);
+  for (const FoundFlats& found : find_flats(mesh, all.rounds, execution))
+    append(found.flats, found.triangles, mesh.mesh, all.flats, all.triangles);
   return all;
 }
 

@@ -333,8 +333,8 @@ std::vector<DimensionedView> dimensioned_views(const std::vector<PlannedView>& v
   for (const PlannedView& planned : views) {
     // A section does not show the size of the whole model.
     const bool is_dimensioned = !is_at_an_angle(*planned.direction) && !planned.section;
-    all.push_back(
-        {&planned.placed, &planned.drawing, planned.rounds.get(), planned.shows_hidden, is_dimensioned, planned.taken});
+    all.push_back({&planned.placed, &planned.drawing, planned.rounds.get(), planned.surfaces.get(), is_dimensioned,
+                   planned.taken});
   }
   return all;
 }
@@ -347,9 +347,9 @@ SheetPlan place_views(std::vector<PlannedView>& views, const Surfaces& surfaces,
   std::vector<OverallSizes> sizes(views.size());
   const std::vector<DimensionedView> dimensioned = dimensioned_views(views);
   if (options.dimensions != Dimensioning::none) sizes = overall_sizes_of(dimensioned);
+  const std::vector<glm::bvec2> rows = position_rows_of(dimensioned, options.dimensions);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const bool has_positions = options.dimensions >= Dimensioning::holes && shows_holes(dimensioned[i]);
-    const glm::dvec2 room = room_for(sizes[i], has_positions, DimensionOptions().text_height);
+    const glm::dvec2 room = room_for(sizes[i], rows[i], {.level = options.dimensions});
     if (room.x > 0) cells[i].room_before.x = std::max(cells[i].room_before.x, views[i].taken.x + room.x);
     if (room.y > 0) cells[i].room_behind.y = std::max(cells[i].room_behind.y, views[i].taken.y + room.y);
   }

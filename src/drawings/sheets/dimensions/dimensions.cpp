@@ -14,6 +14,8 @@
 //        |    |         |       extension lines from the circles
 //     o->|--->|-------->|       the lower left corner of the view is the origin
 //        20   45        90
+//
+// Steps share these rows, and are left out where a hole or a longer step leaves no room.
 #include "sheets/dimensions/dimensions.h"
 
 #include <algorithm>
@@ -23,6 +25,7 @@
 
 #include "rounds/found_rounds.h"
 #include "sheets/dimensions/obstacles.h"
+#include "sheets/dimensions/steps.h"
 
 namespace frontmost::detail {
 namespace {
@@ -32,19 +35,23 @@ constexpr double least_drawn = 0.2;           // share of a round that must be d
 constexpr double nearly_whole = 6.2;          // radians
 constexpr double widest_sagitta = 0.016;      // as a share of the radius, for sides of 20 degrees
 constexpr double same_place_on_paper = 0.02;  // millimetres of paper
+constexpr double same_place = 0.05;           // millimetres
 constexpr std::size_t most_arcs = 256;        // per view
+constexpr double same_size = 1e-3;            // as a share of the size
 
 /// A circle of the scene as it appears in a view.
 struct SeenCircle {
-  const Round* round;
-  glm::dvec2 centre;  ///< on the page
-  double radius;      ///< millimetres on the page
+  const Round* round;  ///< null for flats
+  glm::dvec2 centre;   ///< on the page
+  double radius;       ///< millimetres on the page; of flats, half their width
+  double depth = 0;    ///< of the blind hole that begins at the circle, in units of the scene
 };
 
 struct Extent {
   double low, high;                 ///< on the page
   double size;                      ///< in units of the scene
   const Round* diameter = nullptr;  ///< set if both ends belong to one cylinder
+  const Flats* flats = nullptr;     ///< set if both ends are faces of one hexagon
 };
 
 bool is_seen_along(const glm::dvec3& axis, const View& camera) {
@@ -63,12 +70,21 @@ struct SeenArc {
   glm::dvec2 middle, out;  ///< on the page; `out` points away from the centre and has unit length
 };
 
+/// A hexagon or square of the scene as it appears in a view.
+struct SeenFlats {
+  const Flats* flats;
+  SeenCircle circle;             ///< inscribed
+  std::vector<glm::dvec2> outs;  ///< normals of the faces that are drawn, on the page
+};
+
 struct MeasuredView {
   PageBox box;                        ///< the box of all drawn lines
   std::vector<SeenCircle> circles;    ///< seen along their axes, and drawn to at least a fifth
   std::vector<const Round*> undrawn;  ///< cylinders that are seen along their axes, but drawn less
   std::vector<SeenArc> arcs;          ///< seen along their axes, and drawn in their middle
   std::vector<const Round*> prisms;   ///< those of Rounds::prisms that are seen along their axes
+  std::vector<const Round*> holes;    ///< blind holes that are open towards the viewer
+  std::vector<SeenFlats> flats;       ///< seen along their axes, and drawn at half of their faces
 
   explicit MeasuredView(const DimensionedView& view) : view_(view) {
     const View& camera = view.drawing->view;
@@ -80,11 +96,12 @@ struct MeasuredView {
     if (view.rounds == nullptr) return;
     for (const Round& prism : view.rounds->prisms)
       if (is_seen_along(prism.axis, camera)) prisms.push_back(&prism);
-    const std::vector<double> lengths = drawn_lengths(*view.rounds, *view.drawing, view.with_hidden);
+    const std::vector<double> lengths = drawn_lengths(*view.rounds, *view.drawing, false);
     for (std::size_t i = 0; i < lengths.size(); ++i) {
       const Round& round = view.rounds->rounds[i];
       if (round.kind == RoundKind::revolved) continue;  // its largest circle is no edge
       if (!is_seen_along(round.axis, camera)) continue;
+      if (round.depth > 0 && glm::dot(round.axis, glm::dvec3(camera.forward())) > 0) holes.push_back(&round);
       if (is_drawn(round, lengths[i], camera))
         circles.push_back({&round, on_page(round.from), round.radius * millimetres_});
       else if (round.kind == RoundKind::cylinder)
@@ -97,6 +114,8 @@ struct MeasuredView {
       const double near = same_place_on_paper + widest_sagitta * arc.radius * millimetres_;
       if (is_drawn_near(middle, near)) arcs.push_back({&arc, middle, out / glm::length(out)});
     }
+    for (const Flats& each : view.rounds->flats)
+      if (view.is_dimensioned) look_at(each);
   }
 
   /// The extent along axis 0 (to the right) or 1 (upwards). Rounds reach farther than the corners of their polygons.
@@ -105,8 +124,7 @@ struct MeasuredView {
     const View& camera = view_.drawing->view;
     const glm::dvec3 direction = axis == 0 ? camera.right() : camera.up();
     double low = all.low, high = all.high;
-    for (const Round& round :
-         view_.rounds != nullptr ? std::span<const Round>(view_.rounds->rounds) : std::span<const Round>()) {
+    for (const Round& round : all_rounds()) {
       const double along = glm::dot(round.axis, direction), slack = widest_sagitta * round.radius * millimetres_;
       if (round.turn < nearly_whole) continue;
       const double reach = round.radius * millimetres_ * std::sqrt(std::max(0.0, 1 - along * along));
@@ -124,6 +142,15 @@ struct MeasuredView {
     all.low = low;
     all.high = high;
     all.size = all.diameter != nullptr ? 2 * all.diameter->radius : (high - low) / millimetres_;
+    for (const Flats& each : all_flats()) {
+      const double turn = glm::dot(each.side, direction), off = (high + low) / 2 - on_page(each.from)[axis];
+      const bool is_across = std::abs(glm::dot(each.to - each.from, direction)) <= square * each.width;
+      // A normal of a hexagon is 0 or 60 degrees from another one: cos(3 x) = 4 cos(x)^3 - 3 cos(x).
+      const bool faces = std::abs(4 * turn * turn * turn - 3 * turn) >= 1 - square;
+      if (each.sides == 6 && is_across && faces && std::abs(each.width - all.size) <= same_size * all.size &&
+          std::abs(off) < same_place)
+        all.flats = &each;
+    }
     return all;
   }
 
@@ -150,18 +177,44 @@ struct MeasuredView {
     return foot;
   }
 
+  [[nodiscard]] std::span<const Round> all_rounds() const {
+    return view_.rounds != nullptr ? std::span<const Round>(view_.rounds->rounds) : std::span<const Round>();
+  }
+
+  [[nodiscard]] std::span<const Flats> all_flats() const {
+    return view_.rounds != nullptr ? std::span<const Flats>(view_.rounds->flats) : std::span<const Flats>();
+  }
+
   /// Length in units of the scene.
   [[nodiscard]] double size_of(double on_paper) const { return on_paper / millimetres_; }
 
+  [[nodiscard]] glm::dvec2 on_page(const glm::dvec2& pixel) const { return view_.sheet->on_page(pixel); }
   [[nodiscard]] glm::dvec2 on_page(const glm::dvec3& point) const {
     return view_.sheet->on_page(on_screen(view_.drawing->view, point));
   }
 
  private:
-  /// Whether a drawn line passes within `near` of a place on the page.
+  void look_at(const Flats& all) {
+    const glm::dvec3 axis = glm::normalize(all.to - all.from);
+    if (!is_seen_along(axis, view_.drawing->view)) return;
+    SeenFlats seen{&all, {nullptr, on_page(all.from), all.width / 2 * millimetres_}, {}};
+    for (std::uint32_t i = 0; i < all.sides; ++i) {
+      const double turn = 2 * std::numbers::pi * i / all.sides;
+      const glm::dvec3 out = all.side * std::cos(turn) + glm::cross(axis, all.side) * std::sin(turn);
+      const glm::dvec2 middle = on_page(all.from + out * (all.width / 2));
+      if (is_drawn_near(middle, same_place)) seen.outs.push_back(glm::normalize(middle - seen.circle.centre));
+    }
+    // The overall sizes state a square that bounds the view.
+    const bool is_bound = glm::all(glm::lessThan(glm::abs(box.low + seen.circle.radius - seen.circle.centre) +
+                                                     glm::abs(box.high - seen.circle.radius - seen.circle.centre),
+                                                 glm::dvec2(same_place)));
+    if (2 * seen.outs.size() >= all.sides && !(all.sides == 4 && is_bound)) flats.push_back(std::move(seen));
+  }
+
+  /// Whether a visible line passes within `near` of a place on the page.
   [[nodiscard]] bool is_drawn_near(const glm::dvec2& place, double near) const {
     return std::any_of(view_.drawing->parts.begin(), view_.drawing->parts.end(), [&](const DrawnPart& part) {
-      if (part.hidden_by != 0 && !view_.with_hidden) return false;
+      if (part.hidden_by != 0) return false;
       const glm::dvec2 from = view_.sheet->on_page(part.from), along = view_.sheet->on_page(part.to) - from;
       const double length = glm::dot(along, along);
       const double t = length > 0 ? std::clamp(glm::dot(place - from, along) / length, 0.0, 1.0) : 0;
@@ -176,6 +229,7 @@ struct MeasuredView {
 constexpr double extension_gap = 1;        // millimetres between the measured feature and its extension line
 constexpr double extension_overshoot = 2;  // beyond the dimension line
 constexpr double first_distance = 10;      // distance of a dimension line from the view
+constexpr double origin_radius = 1;        // of the small circle where running dimensions begin
 constexpr double text_distance = 1;        // distance of a number from its line, and from everything else
 
 /// Registers everything drawn as obstacles.
@@ -193,11 +247,10 @@ class DimensionPen {
   /// The small circle at the origin of running dimensions.
   void origin(const glm::dvec2& at) {
     constexpr int corners = 16;
-    constexpr double radius = 1;
     std::vector<glm::dvec2> circle;
     for (int i = 0; i < corners; ++i) {
       const double angle = 2 * std::numbers::pi * i / corners;
-      circle.push_back(at + radius * glm::dvec2(std::cos(angle), std::sin(angle)));
+      circle.push_back(at + origin_radius * glm::dvec2(std::cos(angle), std::sin(angle)));
     }
     lines_.add(circle, true);
   }
@@ -246,13 +299,14 @@ constexpr double least_turn = 190 * std::numbers::pi / 180;  // a round of less 
 constexpr double same_radius = 1e-3;                         // as a share of the radius
 constexpr double same_axis = 5e-3;                           // as a share of the radius
 constexpr double chamfer = 0.25;  // how much wider the rim of a chamfer may be than its wall, as a share of the radius
-constexpr double same_place = 0.05;         // millimetres
 constexpr std::size_t most_circles = 4096;  // per view
 constexpr std::size_t most_diameters = 64;
 constexpr std::size_t most_tried = 12;  // circles of one size that are tried
 constexpr double nearest_knee = 5, farthest_knee = 90, knee_step = 2.5;
-constexpr double cost_of_crossing = 4;  // in millimetres of leader
-constexpr int most_crossed = 16;        // no eye could follow a leader that crosses more
+constexpr double cost_of_crossing = 4;   // in millimetres of leader
+constexpr int most_crossed = 16;         // no eye could follow a leader that crosses more
+constexpr std::size_t fewest_rings = 4;  // equal rings about one axis, as of a thread, that are counted
+constexpr double least_chamfer_circle = 0.8, largest_chamfer_circle = 1.16;  // about flats, in halves of their width
 
 /// Whether two rounds have the same axis.
 bool is_coaxial(const Round& a, const Round& b) {
@@ -275,16 +329,51 @@ bool is_rim(const SeenCircle& circle, const std::vector<SeenCircle>& all) {
   });
 }
 
-const std::string diameter_sign = "\u2300";
+/// Whether the circle belongs to the shape of flats, as where a chamfer meets the top of a bolt's head.
+bool is_about(const SeenCircle& circle, const std::vector<SeenFlats>& all) {
+  if (circle.round->kind != RoundKind::circle) return false;
+  return std::any_of(all.begin(), all.end(), [&](const SeenFlats& seen) {
+    const double share = circle.radius / seen.circle.radius;
+    return share >= least_chamfer_circle && share <= largest_chamfer_circle &&
+           glm::distance(circle.centre, seen.circle.centre) < same_place;
+  });
+}
+
+const std::string diameter_sign = "\u2300", depth_sign = "\u21a7", flats_sign = "AF ";
+
+/// A text with the number of its shapes, if that is not one: "6x...".
+std::string counted(std::size_t count, const std::string& text) {
+  return count > 1 ? std::to_string(count) + "\u00d7" + text : text;
+}
 
 /// Places the diameters and radii of a sheet, each once.
 struct Diameters {
-  /// Marks a cylinder and its continuations as dimensioned. \returns false if the cylinder was marked before.
+  /// Marks a cylinder and its continuations as dimensioned. \returns false if the cylinder was marked before. Blind
+  /// holes that face each other differ.
   bool take(const Round& round) {
     const bool is_new = std::none_of(taken.begin(), taken.end(), [&](const Round& other) {
-      return is_same_radius(other, round) && is_coaxial(other, round);
+      const bool face_each_other = has_all() && other.depth > 0 && round.depth > 0 && dot(other.axis, round.axis) < 0;
+      return !face_each_other && is_same_radius(other, round) && is_coaxial(other, round);
     });
     if (is_new) taken.push_back(round);
+    return is_new;
+  }
+
+  [[nodiscard]] bool has_all() const { return options.level >= Dimensioning::all; }
+
+  [[nodiscard]] std::string text_of(double size) const {
+    return dimension_text(size * options.numbers_per_unit, options.decimals);
+  }
+
+  /// Marks flats as dimensioned. \returns false if flats of this width and axis were marked before.
+  bool take(const Flats& flats) {
+    const glm::dvec3 axis = glm::normalize(flats.to - flats.from);
+    const bool is_new = std::none_of(taken_flats.begin(), taken_flats.end(), [&](const Flats* other) {
+      return std::abs(other->width - flats.width) <= same_size * flats.width &&
+             glm::length(glm::cross(other->from - flats.from, axis)) <= same_axis * flats.width &&
+             glm::length(glm::cross(other->to - flats.from, axis)) <= same_axis * flats.width;
+    });
+    if (is_new) taken_flats.push_back(&flats);
     return is_new;
   }
 
@@ -302,7 +391,7 @@ struct Diameters {
   /// Writes the diameters, or radii, of a view.
   void add(const std::vector<Group>& groups, Dimensions& all) {
     for (const Group& group : groups) {
-      const std::string text = group.count > 1 ? std::to_string(group.count) + "\u00d7" + group.text : group.text;
+      const std::string text = counted(group.count, group.text);
       std::optional<Leader> leader;
       if (placed < most_diameters) leader = best_leader(group, text);
       if (!leader) {
@@ -321,10 +410,10 @@ struct Diameters {
 
   /// Counts cylinders without a diameter, because no view draws them or they are prisms. Call it after all add().
   void count_missing(const MeasuredView& view, Dimensions& all) {
-    const auto count = [&](const std::vector<const Round*>& rounds, std::size_t& number) {
+    const auto count = [&](const std::vector<const Round*>& rounds, std::size_t& missing) {
       std::size_t looked_at = 0;
       for (const Round* const round : rounds)
-        number += round->turn >= least_turn && (++looked_at > most_circles || take(*round));
+        missing += round->turn >= least_turn && (++looked_at > most_circles || take(*round));
     };
     count(view.undrawn, all.undrawn);
     count(view.prisms, all.prisms);
@@ -343,29 +432,88 @@ struct Diameters {
     std::vector<SeenCircle> circles = view.circles;
     circles.resize(std::min(circles.size(), most_circles));
     std::vector<Group> groups;
-    for (const SeenCircle& circle : circles) {
-      if (circle.round->turn < least_turn || is_rim(circle, circles) || !take(*circle.round)) continue;
+    for (SeenCircle& circle : circles) {
+      if (circle.round->turn < least_turn || is_rim(circle, circles)) continue;
+      if (has_all() && is_about(circle, view.flats)) continue;
+      const Round* const hole = hole_at(*circle.round, view);
+      if (!take(hole != nullptr ? *hole : *circle.round)) continue;
+      circle.depth = hole != nullptr ? hole->depth : 0;
+      const std::size_t rings = rings_about(*circle.round, view);
       // Circles are grouped by radius and not by number, because rounding may split one size.
-      auto group = std::find_if(groups.begin(), groups.end(),
-                                [&](const Group& g) { return is_same_radius(*g.circles[0].round, *circle.round); });
+      auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
+        const double depth = g.circles[0].depth;
+        return is_same_radius(*g.circles[0].round, *circle.round) &&
+               std::abs(depth - circle.depth) <= same_size * std::max(depth, circle.depth);
+      });
       if (group == groups.end()) {
-        const double number = 2 * circle.round->radius * options.numbers_per_unit;
-        groups.push_back({diameter_sign + dimension_text(number, options.decimals), {circle}});
+        const std::string depth = circle.depth > 0 ? depth_sign + text_of(circle.depth) : "";
+        groups.push_back({diameter_sign + text_of(2 * circle.round->radius) + depth, {circle}});
+        groups.back().count = rings;
         continue;
       }
       const bool is_there = std::any_of(group->circles.begin(), group->circles.end(), [&](const SeenCircle& c) {
         return glm::distance(c.centre, circle.centre) < same_place;
       });
-      if (!is_there) group->circles.push_back(circle);
+      if (is_there) continue;
+      group->circles.push_back(circle);
+      group->count += rings;
     }
-    for (Group& group : groups) {
-      group.anchors = anchors_of(group.circles);
-      group.count = group.circles.size();
-    }
+    for (Group& group : groups) group.anchors = anchors_of(group.circles);
     // The largest circles come first, because they have the longest leaders around inner circles.
     std::stable_sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) {
       return a.circles[0].round->radius > b.circles[0].round->radius;
     });
+    return groups;
+  }
+
+  /// The blind hole of which a view shows the rim; null if there is none.
+  [[nodiscard]] const Round* hole_at(const Round& rim, const MeasuredView& view) const {
+    if (!has_all()) return nullptr;
+    const auto found = std::find_if(view.holes.begin(), view.holes.end(), [&](const Round* hole) {
+      return is_same_radius(*hole, rim) && is_coaxial(*hole, rim);
+    });
+    return found == view.holes.end() ? nullptr : *found;
+  }
+
+  /// The number of rings about one axis, as of a modelled thread: equal cylinders apart from each other, or circles if
+  /// there are no cylinders. 1 if they are few, because a shaft or bore has one diameter.
+  [[nodiscard]] std::size_t rings_about(const Round& ring, const MeasuredView& view) const {
+    if (!has_all()) return 1;
+    std::vector<std::pair<double, double>> cylinders, circles;  // their extents along the axis
+    for (const Round& other : view.all_rounds()) {
+      if (other.kind == RoundKind::revolved || !is_same_radius(other, ring) || !is_coaxial(other, ring)) continue;
+      const double from = glm::dot(other.from - ring.from, ring.axis), to = glm::dot(other.to - ring.from, ring.axis);
+      (other.kind == RoundKind::cylinder ? cylinders : circles).emplace_back(std::min(from, to), std::max(from, to));
+    }
+    std::vector<std::pair<double, double>>& all = cylinders.empty() ? circles : cylinders;
+    std::sort(all.begin(), all.end());
+    std::size_t rings = 0;
+    double reached = -std::numeric_limits<double>::infinity();
+    for (const auto& extent : all) {
+      rings += extent.first > reached + same_radius * ring.radius;
+      reached = std::max(reached, extent.second);
+    }
+    return rings >= fewest_rings ? rings : 1;
+  }
+
+  /// The widths across flats that this view shows and no earlier view has shown.
+  [[nodiscard]] std::vector<Group> flats_of(const MeasuredView& view) {
+    std::vector<Group> groups;
+    for (const SeenFlats& seen : view.flats) {
+      if (!take(*seen.flats)) continue;
+      const std::string text = flats_sign + text_of(seen.flats->width);
+      auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.text == text; });
+      if (group == groups.end()) group = groups.insert(group, {text, {}});
+      ++group->count;
+      group->circles.push_back(seen.circle);
+      if (group->count > most_tried) continue;
+      for (const glm::dvec2& out : seen.outs)
+        for (const double turn : {0.0, 0.5, -0.5}) {
+          const glm::dvec2 across(-out.y, out.x);
+          group->anchors.push_back(
+              {seen.circle.centre + seen.circle.radius * out, out * std::cos(turn) + across * std::sin(turn)});
+        }
+    }
     return groups;
   }
 
@@ -382,7 +530,7 @@ struct Diameters {
       const auto number = std::size_t(known - radii.begin());
       if (known == radii.end()) {
         radii.push_back(arc.radius);
-        groups.push_back({"R" + dimension_text(arc.radius * options.numbers_per_unit, options.decimals), {}});
+        groups.push_back({"R" + text_of(arc.radius), {}});
       }
       Group& group = groups[number];
       ++group.count;
@@ -431,6 +579,7 @@ struct Diameters {
   DimensionPen& pen;
   const Obstacles& obstacles;
   std::vector<Round> taken{};
+  std::vector<const Flats*> taken_flats{};
   std::size_t placed = 0;
 };
 
@@ -467,45 +616,143 @@ void draw_overall_size(DimensionPen& pen, const MeasuredView& view, const glm::d
 }
 
 constexpr double positions_room = first_distance + extension_overshoot + 14;  // numbers of five digits
+constexpr double jog_room = 3.5;                                              // more, if numbers are moved aside
+constexpr double least_gap = 2, most_moved = 8;                               // millimetres, of numbers moved aside
+constexpr std::size_t most_steps = 24;                                        // in a row
+constexpr std::size_t fewest_alike = 5;  // equal steps, as of a modelled thread, that are stated all or not at all
 
-/// Draws the positions of circles along an axis, as running dimensions. `taken` as for draw_overall_size().
+/// A running dimension; all but `length` in millimetres on the page.
+struct Position {
+  double distance;   ///< from the datum
+  double foot;       ///< where the extension line begins, along the other axis
+  double length;     ///< of a step's lines, in pixels; infinite for a circle
+  double place = 0;  ///< of the number, from the datum
+};
+
+/// The room for the numbers of a row, in millimetres.
+struct NumberRoom {
+  double thickness;          ///< of a number with its distance to the next one
+  double least_gap;          ///< between extension lines
+  double most_moved;         ///< from an extension line to its number
+  double low = 0, high = 0;  ///< between these the numbers lie, from the datum
+};
+
+/// Places numbers as near to their extension lines as they have room, by isotonic regression: numbers that would touch
+/// form blocks, and a block has its mean place. \returns false if there is no room. `row` ascends.
+bool place_numbers(std::vector<Position>& row, const NumberRoom& room) {
+  struct Block {
+    double sum;
+    std::size_t count;
+    [[nodiscard]] double mean() const { return sum / double(count); }
+  };
+  std::vector<Block> blocks;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    if (i > 0 && row[i].distance - row[i - 1].distance < room.least_gap) return false;
+    blocks.push_back({row[i].distance - double(i) * room.thickness, 1});
+    for (std::size_t last = blocks.size() - 1; last > 0 && blocks[last - 1].mean() > blocks[last].mean(); --last) {
+      blocks[last - 1].sum += blocks[last].sum;
+      blocks[last - 1].count += blocks[last].count;
+      blocks.pop_back();
+    }
+  }
+  std::size_t at = 0;
+  const double high = room.high - double(row.size() - 1) * room.thickness;
+  if (high < room.low) return false;
+  for (const Block& block : blocks)
+    for (std::size_t i = 0; i < block.count; ++i, ++at) {
+      row[at].place = std::clamp(block.mean(), room.low, high) + double(at) * room.thickness;
+      if (std::abs(row[at].place - row[at].distance) > room.most_moved + same_place) return false;
+    }
+  return true;
+}
+
+/// The positions of a row whose numbers have room: circles first, then the longest steps. Each distance comes once.
+/// `away`: the direction from the view to the row. Counts the others.
+std::vector<Position> chosen_positions(std::vector<Position> positions, double away, const NumberRoom& room,
+                                       std::size_t& left_out) {
+  std::erase_if(positions, [](const Position& p) { return p.distance < same_place; });
+  // Of positions at one distance, the one nearest to the row comes first.
+  std::sort(positions.begin(), positions.end(), [&](const Position& a, const Position& b) {
+    const bool is_same = std::abs(a.distance - b.distance) < same_place;
+    return is_same ? away * a.foot > away * b.foot : a.distance < b.distance;
+  });
+  std::vector<Position> each;
+  for (const Position& p : positions)
+    if (each.empty() || p.distance >= each.back().distance + same_place)
+      each.push_back(p);
+    else
+      each.back().length = std::max(each.back().length, p.length);
+  std::stable_sort(each.begin(), each.end(), [](const Position& a, const Position& b) { return a.length > b.length; });
+  std::vector<Position> chosen;
+  std::size_t steps = 0;
+  for (auto begin = each.begin(); begin != each.end();) {
+    const bool is_step = std::isfinite(begin->length);
+    const auto end =
+        std::find_if(begin, each.end(), [&](const Position& p) { return p.length < (1 - same_size) * begin->length; });
+    std::vector<Position> more = chosen;
+    const auto count = std::size_t(end - begin);
+    for (auto p = begin; p != end; ++p) {
+      if (is_step && steps + (more.size() - chosen.size()) >= most_steps) break;
+      std::vector<Position> wanted = more;
+      wanted.insert(std::find_if(wanted.begin(), wanted.end(),
+                                 [&](const Position& other) { return other.distance > p->distance; }),
+                    *p);
+      if (place_numbers(wanted, room)) more = std::move(wanted);
+    }
+    if (is_step && count >= fewest_alike && more.size() - chosen.size() < count) more = chosen;
+    left_out += count - (more.size() - chosen.size());
+    if (is_step) steps += more.size() - chosen.size();
+    chosen = std::move(more);
+    begin = end;
+  }
+  return chosen;
+}
+
+/// Draws the positions of circles and steps along an axis, as running dimensions. `taken` as for draw_overall_size().
 void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec2& taken, int axis, const Extent& e,
-                    const std::vector<Diameters::Group>& groups, const DimensionOptions& options, Dimensions& all) {
+                    const std::vector<Diameters::Group>& groups, const std::vector<Step>& steps,
+                    const DimensionOptions& options, Dimensions& all) {
   const bool is_level = axis == 0;
   const double row = is_level ? view.box.high.y + first_distance + taken.y : view.box.low.x - first_distance - taken.x;
   const double away = is_level ? 1 : -1, datum = is_level ? e.low : e.high, forwards = is_level ? 1 : -1;
   const auto at = [&](double along, double across) {
     return is_level ? glm::dvec2(along, across) : glm::dvec2(across, along);
   };
-  struct Position {
-    double distance, foot;  ///< from the datum, and where the extension line begins; millimetres on the page
-  };
   std::vector<Position> positions;
   for (const Diameters::Group& group : groups)
     for (const SeenCircle& circle : group.circles)
-      positions.push_back(
-          {(circle.centre[axis] - datum) * forwards, circle.centre[1 - axis] + away * (circle.radius + extension_gap)});
-  std::erase_if(positions, [](const Position& p) { return p.distance < same_place; });
-  // Of circles at one distance, the one nearest to the row comes first.
-  std::sort(positions.begin(), positions.end(), [&](const Position& a, const Position& b) {
-    const bool is_same = std::abs(a.distance - b.distance) < same_place;
-    return is_same ? away * a.foot > away * b.foot : a.distance < b.distance;
-  });
-  if (positions.empty()) return;
-  const double thickness = options.text_height + text_distance;
-  double last = -thickness, farthest = 0;
-  for (const Position& p : positions) {
-    if (p.distance < farthest + same_place) continue;
-    if (p.distance < last + thickness) {
-      ++all.left_out;
-      continue;
-    }
-    farthest = last = p.distance;
-    const double along = datum + forwards * p.distance;
+      positions.push_back({(circle.centre[axis] - datum) * forwards,
+                           circle.centre[1 - axis] + away * (circle.radius + extension_gap),
+                           std::numeric_limits<double>::infinity()});
+  for (const Step& step : steps) {
+    const glm::dvec2 place = view.on_page(at(step.at, step.foot));
+    positions.push_back({(place[axis] - datum) * forwards, place[1 - axis] + away * extension_gap, step.length});
+  }
+  const bool has_all = options.level >= Dimensioning::all;
+  const double thickness = options.text_height + text_distance, infinity = std::numeric_limits<double>::infinity();
+  // The extension lines of the overall size run beside the first and the last number.
+  NumberRoom room{thickness, thickness, 0, -infinity, infinity};
+  if (has_all)
+    room = {thickness, least_gap, most_moved, (thickness + text_distance) / 2,
+            e.high - e.low - (thickness + text_distance) / 2};
+  const std::vector<Position> chosen = chosen_positions(std::move(positions), away, room, all.left_out);
+  if (chosen.empty()) return;
+  const bool has_jogs = std::any_of(chosen.begin(), chosen.end(),
+                                    [](const Position& p) { return std::abs(p.place - p.distance) > same_place; });
+  const double end = row + away * (extension_overshoot + (has_jogs ? jog_room : 0));
+  double farthest = 0;
+  for (const Position& p : chosen) {
+    const double along = datum + forwards * p.distance, number = datum + forwards * p.place;
     pen.line(at(along, p.foot), at(along, row + away * extension_overshoot));
-    pen.arrow(at(along, row), at(forwards, 0));
+    if (has_jogs) pen.line(at(along, row + away * extension_overshoot), at(number, end));
+    // Too near to the origin, the arrowhead points back to it.
+    const double arrow = pen.arrow_length();
+    const bool is_near =
+        p.distance < arrow + origin_radius && (&p == &chosen.back() || (&p)[1].distance > p.distance + arrow);
+    pen.arrow(at(along, row), at(is_near ? -forwards : forwards, 0));
+    farthest = std::max(farthest, p.distance + (is_near ? 2 * arrow : 0));
     // The number stands in line with its extension line.
-    const glm::dvec2 base = at(along + options.text_height / 2 + text_distance, row + away * (extension_overshoot + 1));
+    const glm::dvec2 base = at(number + options.text_height / 2 + text_distance, end + away);
     pen.text(dimension_text(view.size_of(p.distance) * options.numbers_per_unit, options.decimals), base,
              TextAlign::right, is_level);
     ++all.count;
@@ -514,6 +761,51 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
            at(datum, row + away * extension_overshoot));
   pen.line(at(datum, row), at(datum + forwards * farthest, row));
   pen.origin(at(datum, row));
+}
+
+/// Millimetres that rows of positions occupy on the left of a view and below it.
+glm::dvec2 room_of(const glm::bvec2& rows, Dimensioning level) {
+  const double room = positions_room + (level >= Dimensioning::all ? jog_room : 0);
+  return {rows.y ? room : 0, rows.x ? room : 0};
+}
+
+struct PlannedRows {
+  std::vector<glm::bvec2> rows;  ///< as position_rows_of()
+  std::vector<ViewSteps> steps;
+};
+
+/// The rows of positions of all views, and their steps. `measured` may be empty below Dimensioning::holes.
+PlannedRows plan_rows(std::span<const DimensionedView> views, const std::vector<MeasuredView>& measured,
+                      Dimensioning level) {
+  PlannedRows planned{std::vector<glm::bvec2>(views.size(), glm::bvec2(false)), std::vector<ViewSteps>(views.size())};
+  if (level < Dimensioning::holes) return planned;
+  for (std::size_t i = 0; i < views.size(); ++i)
+    planned.rows[i] = glm::bvec2(views[i].is_dimensioned &&
+                                 std::any_of(measured[i].circles.begin(), measured[i].circles.end(),
+                                             [](const SeenCircle& c) { return c.round->turn >= least_turn; }));
+  if (level < Dimensioning::all) return planned;
+  std::vector<SteppedView> stepped;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    SteppedView& view = stepped.emplace_back(SteppedView{&views[i], glm::bvec2(false), {}});
+    if (!views[i].is_dimensioned || measured[i].box.is_empty()) continue;
+    view.has_datum = {measured[i].extent(0).diameter == nullptr, measured[i].extent(1).diameter == nullptr};
+    if (views[i].rounds == nullptr) continue;
+    const auto cover = [&](const auto& shape) {
+      const auto first = views[i].rounds->triangles.begin() + shape.first;
+      view.covered.insert(view.covered.end(), first, first + shape.count);
+    };
+    for (const Round& round : views[i].rounds->rounds)
+      if (round.kind != RoundKind::circle) cover(round);
+    for (std::size_t k = 0; k < views.size(); ++k)
+      if (views[k].rounds == views[i].rounds)
+        for (const SeenFlats& seen : measured[k].flats) cover(*seen.flats);
+    std::sort(view.covered.begin(), view.covered.end());
+  }
+  planned.steps = steps_of(stepped);
+  for (std::size_t i = 0; i < views.size(); ++i)
+    for (const int axis : {0, 1})
+      planned.rows[i][axis] = planned.rows[i][axis] || !planned.steps[i][std::size_t(axis)].empty();
+  return planned;
 }
 
 void validate(const DimensionOptions& options) {
@@ -576,23 +868,18 @@ std::vector<OverallSizes> overall_sizes_of(std::span<const DimensionedView> view
   return all;
 }
 
-bool shows_holes(const DimensionedView& view) {
-  if (!view.is_dimensioned || view.rounds == nullptr) return false;
-  const View& camera = view.drawing->view;
-  const std::vector<double> lengths = drawn_lengths(*view.rounds, *view.drawing, view.with_hidden);
-  for (std::size_t i = 0; i < lengths.size(); ++i) {
-    const Round& round = view.rounds->rounds[i];
-    if (round.kind != RoundKind::revolved && round.turn >= least_turn && is_seen_along(round.axis, camera) &&
-        is_drawn(round, lengths[i], camera))
-      return true;
-  }
-  return false;
+std::vector<glm::bvec2> position_rows_of(std::span<const DimensionedView> views, Dimensioning level) {
+  std::vector<MeasuredView> measured;
+  if (level >= Dimensioning::holes)
+    for (const DimensionedView& view : views) measured.emplace_back(view);
+  return plan_rows(views, measured, level).rows;
 }
 
-glm::dvec2 room_for(const OverallSizes& sizes, bool has_positions, double text_height) {
-  const double more = has_positions ? positions_room : 0;
-  return {more + (sizes.height ? first_distance + text_height + 2 * text_distance : 0),
-          more + (sizes.width ? first_distance + extension_overshoot + text_distance : 0)};
+glm::dvec2 room_for(const OverallSizes& sizes, const glm::bvec2& rows, const DimensionOptions& options) {
+  const glm::dvec2 more = room_of(rows, options.level);
+  const double text_height = options.text_height;
+  return {more.x + (sizes.height ? first_distance + text_height + 2 * text_distance : 0),
+          more.y + (sizes.width ? first_distance + extension_overshoot + text_distance : 0)};
 }
 
 Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBox& area, std::span<const PageBox> taken,
@@ -609,9 +896,8 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
   Dimensions all;
   DimensionPen pen(options, obstacles);
   Diameters diameters{options, pen, obstacles};
-  std::vector<bool> has_positions(views.size());
+  const PlannedRows planned = plan_rows(views, measured, options.level);
   for (std::size_t i = 0; i < views.size(); ++i) {
-    has_positions[i] = options.level >= Dimensioning::holes && shows_holes(views[i]);
     if (measured[i].box.is_empty()) continue;
     for (const int axis : {0, 1}) {
       if (!(axis == 0 ? shares[i].width : shares[i].height)) continue;
@@ -620,9 +906,11 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
       std::string text = dimension_text(extent.size * options.numbers_per_unit, options.decimals);
       if (extent.diameter != nullptr) {
         if (!diameters.take(*extent.diameter)) continue;
-        text = diameter_sign + text;
+        text = counted(diameters.rings_about(*extent.diameter, measured[i]), diameter_sign + text);
+      } else if (extent.flats != nullptr && options.level >= Dimensioning::all && diameters.take(*extent.flats)) {
+        text = flats_sign + text;
       }
-      const glm::dvec2 within = views[i].taken + glm::dvec2(has_positions[i] ? positions_room : 0);
+      const glm::dvec2 within = views[i].taken + room_of(planned.rows[i], options.level);
       draw_overall_size(pen, measured[i], within, axis, extent, text);
       ++all.count;
     }
@@ -632,9 +920,12 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (!views[i].is_dimensioned) continue;
       groups[i] = diameters.groups_of(measured[i], all);
+      if (options.level >= Dimensioning::all)
+        for (Diameters::Group& flats : diameters.flats_of(measured[i])) groups[i].push_back(std::move(flats));
       for (const int axis : {0, 1})
-        if (const Extent extent = measured[i].extent(axis); has_positions[i] && extent.diameter == nullptr)
-          draw_positions(pen, measured[i], views[i].taken, axis, extent, groups[i], options, all);
+        if (const Extent extent = measured[i].extent(axis); planned.rows[i][axis] && extent.diameter == nullptr)
+          draw_positions(pen, measured[i], views[i].taken, axis, extent, groups[i], planned.steps[i][std::size_t(axis)],
+                         options, all);
     }
     for (const std::vector<Diameters::Group>& of_view : groups) diameters.add(of_view, all);
     for (std::size_t i = 0; i < views.size() && options.level >= Dimensioning::all; ++i)

@@ -14,12 +14,12 @@ namespace frontmost::detail {
 
 /// A view of a sheet, with the settings for its dimensions.
 struct DimensionedView {
-  const SheetView* sheet = nullptr;  ///< its place on the page is final
-  const Drawing* drawing = nullptr;  ///< in parallel projection
-  const Rounds* rounds = nullptr;    ///< circles of the drawing's surfaces; null for no diameters
-  bool with_hidden = true;           ///< hidden circles get diameters
-  bool is_dimensioned = true;        ///< false: only an obstacle, like views at an angle
-  glm::dvec2 taken{0};               ///< millimetres on the left and below that other marks occupy
+  const SheetView* sheet = nullptr;    ///< its place on the page is final
+  const Drawing* drawing = nullptr;    ///< in parallel projection
+  const Rounds* rounds = nullptr;      ///< circles of the drawing's surfaces; null for no diameters
+  const Surfaces* surfaces = nullptr;  ///< those of the drawing; null for no steps
+  bool is_dimensioned = true;          ///< false: only an obstacle, like views at an angle
+  glm::dvec2 taken{0};                 ///< millimetres on the left and below that other marks occupy
 };
 
 /// How numbers are written.
@@ -46,10 +46,11 @@ struct OverallSizes {
 /// Decides which overall sizes each view has. Each direction of space has one size, in the first view that shows the
 /// direction in true length, level or upright. Views that are not dimensioned have no sizes.
 [[nodiscard]] std::vector<OverallSizes> overall_sizes_of(std::span<const DimensionedView> views);
-/// Whether a view has circles whose positions it may state.
-[[nodiscard]] bool shows_holes(const DimensionedView& view);
+/// Whether each view may have rows of running dimensions: below the view (x), and on its left (y). Views that show
+/// circles may have both; steps need one.
+[[nodiscard]] std::vector<glm::bvec2> position_rows_of(std::span<const DimensionedView> views, Dimensioning level);
 /// Millimetres that sizes and positions occupy on the left of the view and below it, in addition to other marks.
-[[nodiscard]] glm::dvec2 room_for(const OverallSizes& sizes, bool has_positions, double text_height);
+[[nodiscard]] glm::dvec2 room_for(const OverallSizes& sizes, const glm::bvec2& rows, const DimensionOptions& options);
 
 /// The text of a number, without trailing zeros, with at most so many decimals or three significant digits, whichever
 /// is more. If a half would have to be rounded, the text has one more digit: "50", "12.7", "1.875". Fractions are
@@ -60,7 +61,7 @@ struct Dimensions {
   PageLayer layer{"7 dimensions"};  ///< one group of lines and one of texts, both without names
   std::size_t count = 0;            ///< number of dimensions on the page
   std::size_t left_out = 0;         ///< diameters, radii and positions without room
-  std::size_t undrawn = 0;          ///< diameters of cylinders that are seen along their axes, but not drawn
+  std::size_t undrawn = 0;          ///< diameters of cylinders that are seen along their axes, but hidden
   std::size_t prisms = 0;           ///< diameters of cylinders of fewer than 18 sides, which count as polygons
 };
 
@@ -68,9 +69,11 @@ struct Dimensions {
 /// once on the sheet, those of one size in a view together ("6x⌀10"). An overall size of a single cylinder is its
 /// diameter, which the corners of its polygon do not reach. Circles at the end of a cone or chamfer, and arcs of little
 /// more than a half circle or less, have none. Circles with a diameter have positions, too: running dimensions from the
-/// lower left corner of their view, one for each distance, unless a round part bounds the view there. At most 64
-/// diameters stand on leader lines. They avoid lines and texts of the drawing and `taken`, and stay within `area` (the
-/// page within its frame). O(lines + rounds). \throws Error bad_argument for options out of range.
+/// lower left corner of their view, one for each distance, unless a round part bounds the view there. Steps share these
+/// rows (steps_of()), at most 24 in one. Blind holes have depths behind their diameters; hexagons and squares of plane
+/// faces have a width across flats. Hidden circles and faces have no dimension. At most 64 diameters stand on leader
+/// lines. They avoid lines and texts of the drawing and `taken`, and stay within `area` (the page within its frame).
+/// O(lines + rounds). \throws Error bad_argument for options out of range.
 [[nodiscard]] Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBox& area,
                                           std::span<const PageBox> taken, const DimensionOptions& options = {});
 
