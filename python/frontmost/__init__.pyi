@@ -1107,10 +1107,10 @@ class Sheet:
         """Width and height in millimetres."""
     @property
     def left_out(self) -> int:
-        """Number of diameters that were left out for lack of room."""
+        """Number of diameters, radii and positions that were left out for lack of room."""
     @property
     def undrawn(self) -> int:
-        """Number of diameters left out because the view along the cylinder's axis draws none of its lines."""
+        """Number of diameters left out because no view along the cylinder's axis shows the cylinder."""
     @property
     def prisms(self) -> int:
         """Number of cylinders of 7 to 17 sides, which count as prisms and have no diameter."""

@@ -25,6 +25,7 @@
 
 #include "rounds/found_rounds.h"
 #include "sheets/dimensions/obstacles.h"
+#include "sheets/dimensions/positions.h"
 #include "sheets/dimensions/steps.h"
 
 namespace frontmost::detail {
@@ -35,9 +36,7 @@ constexpr double least_drawn = 0.2;           // share of a round that must be d
 constexpr double nearly_whole = 6.2;          // radians
 constexpr double widest_sagitta = 0.016;      // as a share of the radius, for sides of 20 degrees
 constexpr double same_place_on_paper = 0.02;  // millimetres of paper
-constexpr double same_place = 0.05;           // millimetres
 constexpr std::size_t most_arcs = 256;        // per view
-constexpr double same_size = 1e-3;            // as a share of the size
 
 /// A circle of the scene as it appears in a view.
 struct SeenCircle {
@@ -618,99 +617,10 @@ void draw_overall_size(DimensionPen& pen, const MeasuredView& view, const glm::d
 constexpr double positions_room = first_distance + extension_overshoot + 14;  // numbers of five digits
 constexpr double jog_room = 3.5;                                              // more, if numbers are moved aside
 constexpr double least_gap = 2, most_moved = 8;                               // millimetres, of numbers moved aside
-constexpr std::size_t most_steps = 24;                                        // in a row
-constexpr std::size_t fewest_alike = 5;  // equal steps, as of a modelled thread, that are stated all or not at all
-
-/// A running dimension; all but `length` in millimetres on the page.
-struct Position {
-  double distance;   ///< from the datum
-  double foot;       ///< where the extension line begins, along the other axis
-  double length;     ///< of a step's lines, in pixels; infinite for a circle
-  double place = 0;  ///< of the number, from the datum
-};
-
-/// The room for the numbers of a row, in millimetres.
-struct NumberRoom {
-  double thickness;          ///< of a number with its distance to the next one
-  double least_gap;          ///< between extension lines
-  double most_moved;         ///< from an extension line to its number
-  double low = 0, high = 0;  ///< between these the numbers lie, from the datum
-};
-
-/// Places numbers as near to their extension lines as they have room, by isotonic regression: numbers that would touch
-/// form blocks, and a block has its mean place. \returns false if there is no room. `row` ascends.
-bool place_numbers(std::vector<Position>& row, const NumberRoom& room) {
-  struct Block {
-    double sum;
-    std::size_t count;
-    [[nodiscard]] double mean() const { return sum / double(count); }
-  };
-  std::vector<Block> blocks;
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    if (i > 0 && row[i].distance - row[i - 1].distance < room.least_gap) return false;
-    blocks.push_back({row[i].distance - double(i) * room.thickness, 1});
-    for (std::size_t last = blocks.size() - 1; last > 0 && blocks[last - 1].mean() > blocks[last].mean(); --last) {
-      blocks[last - 1].sum += blocks[last].sum;
-      blocks[last - 1].count += blocks[last].count;
-      blocks.pop_back();
-    }
-  }
-  std::size_t at = 0;
-  const double high = room.high - double(row.size() - 1) * room.thickness;
-  if (high < room.low) return false;
-  for (const Block& block : blocks)
-    for (std::size_t i = 0; i < block.count; ++i, ++at) {
-      row[at].place = std::clamp(block.mean(), room.low, high) + double(at) * room.thickness;
-      if (std::abs(row[at].place - row[at].distance) > room.most_moved + same_place) return false;
-    }
-  return true;
-}
-
-/// The positions of a row whose numbers have room: circles first, then the longest steps. Each distance comes once.
-/// `away`: the direction from the view to the row. Counts the others.
-std::vector<Position> chosen_positions(std::vector<Position> positions, double away, const NumberRoom& room,
-                                       std::size_t& left_out) {
-  std::erase_if(positions, [](const Position& p) { return p.distance < same_place; });
-  // Of positions at one distance, the one nearest to the row comes first.
-  std::sort(positions.begin(), positions.end(), [&](const Position& a, const Position& b) {
-    const bool is_same = std::abs(a.distance - b.distance) < same_place;
-    return is_same ? away * a.foot > away * b.foot : a.distance < b.distance;
-  });
-  std::vector<Position> each;
-  for (const Position& p : positions)
-    if (each.empty() || p.distance >= each.back().distance + same_place)
-      each.push_back(p);
-    else
-      each.back().length = std::max(each.back().length, p.length);
-  std::stable_sort(each.begin(), each.end(), [](const Position& a, const Position& b) { return a.length > b.length; });
-  std::vector<Position> chosen;
-  std::size_t steps = 0;
-  for (auto begin = each.begin(); begin != each.end();) {
-    const bool is_step = std::isfinite(begin->length);
-    const auto end =
-        std::find_if(begin, each.end(), [&](const Position& p) { return p.length < (1 - same_size) * begin->length; });
-    std::vector<Position> more = chosen;
-    const auto count = std::size_t(end - begin);
-    for (auto p = begin; p != end; ++p) {
-      if (is_step && steps + (more.size() - chosen.size()) >= most_steps) break;
-      std::vector<Position> wanted = more;
-      wanted.insert(std::find_if(wanted.begin(), wanted.end(),
-                                 [&](const Position& other) { return other.distance > p->distance; }),
-                    *p);
-      if (place_numbers(wanted, room)) more = std::move(wanted);
-    }
-    if (is_step && count >= fewest_alike && more.size() - chosen.size() < count) more = chosen;
-    left_out += count - (more.size() - chosen.size());
-    if (is_step) steps += more.size() - chosen.size();
-    chosen = std::move(more);
-    begin = end;
-  }
-  return chosen;
-}
 
 /// Draws the positions of circles and steps along an axis, as running dimensions. `taken` as for draw_overall_size().
 void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec2& taken, int axis, const Extent& e,
-                    const std::vector<Diameters::Group>& groups, const std::vector<Step>& steps,
+                    const std::vector<Diameters::Group>& groups, const std::vector<PlaneStep>& steps,
                     const DimensionOptions& options, Dimensions& all) {
   const bool is_level = axis == 0;
   const double row = is_level ? view.box.high.y + first_distance + taken.y : view.box.low.x - first_distance - taken.x;
@@ -724,7 +634,7 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
       positions.push_back({(circle.centre[axis] - datum) * forwards,
                            circle.centre[1 - axis] + away * (circle.radius + extension_gap),
                            std::numeric_limits<double>::infinity()});
-  for (const Step& step : steps) {
+  for (const PlaneStep& step : steps) {
     const glm::dvec2 place = view.on_page(at(step.at, step.foot));
     positions.push_back({(place[axis] - datum) * forwards, place[1 - axis] + away * extension_gap, step.length});
   }
@@ -747,8 +657,8 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
     if (has_jogs) pen.line(at(along, row + away * extension_overshoot), at(number, end));
     // Too near to the origin, the arrowhead points back to it.
     const double arrow = pen.arrow_length();
-    const bool is_near =
-        p.distance < arrow + origin_radius && (&p == &chosen.back() || (&p)[1].distance > p.distance + arrow);
+    const bool is_near = has_all && p.distance < arrow + origin_radius &&
+                         (&p == &chosen.back() || (&p)[1].distance > p.distance + arrow);
     pen.arrow(at(along, row), at(is_near ? -forwards : forwards, 0));
     farthest = std::max(farthest, p.distance + (is_near ? 2 * arrow : 0));
     // The number stands in line with its extension line.

@@ -20,12 +20,12 @@ constexpr double along_axis = 2e-3;       // sine of the greatest angle between 
 constexpr double same_line = 0.05;        // pixels
 constexpr double least_share = 1.0 / 40;  // length of a step's lines, as a share of the view's longer side
 constexpr double smooth = 0.9396;         // cosine of 20 degrees: triangles that turn by less are one smooth surface
-constexpr double wider = 2.5;             // how much wider than the facets of a fillet a plane face is
-constexpr std::size_t most_planes = 64;   // for each axis of a view
+constexpr double larger = 2;  // how much larger than the facets of a fillet beside it a triangle of a plane face is
+constexpr std::size_t most_planes = 64;  // for each axis of a view
 
 /// A step with the place of its plane in the world, along a direction.
-struct Candidate {
-  Step step;
+struct SteppedPlane {
+  PlaneStep step;
   double place, slack;   ///< in units of the scene
   glm::dvec3 direction;  ///< unit length
   std::size_t view;
@@ -41,7 +41,7 @@ class StepFinder {
         axis_(axis),
         direction_(axis == 0 ? view_.drawing->view.right() : view_.drawing->view.up()) {}
 
-  [[nodiscard]] std::vector<Candidate> run() const {
+  [[nodiscard]] std::vector<SteppedPlane> run() const {
     struct Line {
       double at, low, high;  ///< along the axis, and along the other one
       double place;
@@ -55,13 +55,13 @@ class StepFinder {
       if (off > std::max(level * std::abs(b - a), level) || a == b) continue;
       if (at < box.low[axis_] + same_line || at > box.high[axis_] - same_line) continue;
       const DrawnEdge& edge = view_.drawing->edges[part.edge];
-      if (!is_of_plane(edge.left, edge.right, edge) && !is_of_plane(edge.right, edge.left, edge)) continue;
+      if (!is_of_plane(edge.left, edge.right) && !is_of_plane(edge.right, edge.left)) continue;
       lines.push_back({at, std::min(a, b), std::max(a, b), glm::dot(edge.from, direction_)});
     }
     std::sort(lines.begin(), lines.end(), [](const Line& a, const Line& b) { return a.at < b.at; });
     const Projection& p = view_.drawing->view.projection;
     const glm::dvec2 size = box.high - box.low;
-    std::vector<Candidate> all;
+    std::vector<SteppedPlane> all;
     for (auto begin = lines.begin(); begin != lines.end();) {
       const auto end = std::find_if(begin, lines.end(), [&](const Line& l) { return l.at > begin->at + same_line; });
       std::sort(begin, end, [](const Line& a, const Line& b) { return a.low < b.low; });
@@ -81,15 +81,15 @@ class StepFinder {
       begin = end;
     }
     std::stable_sort(all.begin(), all.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.step.length > b.step.length; });
+                     [](const SteppedPlane& a, const SteppedPlane& b) { return a.step.length > b.step.length; });
     all.resize(std::min(all.size(), most_planes));
-    for (Candidate& candidate : all) candidate.is_clear = is_clear(candidate.step);
+    for (SteppedPlane& plane : all) plane.is_clear = is_clear(plane.step);
     return all;
   }
 
  private:
   /// Whether a triangle beside an edge is part of a plane face across the axis, and not a facet of a curved surface.
-  [[nodiscard]] bool is_of_plane(PrimitiveId id, PrimitiveId other, const DrawnEdge& edge) const {
+  [[nodiscard]] bool is_of_plane(PrimitiveId id, PrimitiveId other) const {
     if (id == no_primitive || std::binary_search(covered_.begin(), covered_.end(), id)) return false;
     const glm::dvec3 normal = doubled_area(id);
     const double area = glm::length(normal);
@@ -97,8 +97,7 @@ class StepFinder {
     if (other == no_primitive) return true;
     const glm::dvec3 beside = doubled_area(other);
     const double its_area = glm::length(beside);
-    if (std::abs(glm::dot(normal, beside)) < smooth * area * its_area) return true;
-    return height_over(id, area, edge) > wider * height_over(other, its_area, edge);
+    return std::abs(glm::dot(normal, beside)) < smooth * area * its_area || area > larger * its_area;
   }
 
   [[nodiscard]] glm::dvec3 doubled_area(PrimitiveId id) const {
@@ -106,22 +105,9 @@ class StepFinder {
     return glm::cross(glm::dvec3(c[1]) - glm::dvec3(c[0]), glm::dvec3(c[2]) - glm::dvec3(c[0]));
   }
 
-  /// The height of a triangle over its side that is most parallel to an edge.
-  [[nodiscard]] double height_over(PrimitiveId id, double doubled_area, const DrawnEdge& edge) const {
-    const std::array<glm::vec3, 3> c = view_.surfaces->corners(id);
-    const glm::dvec3 along = edge.to - edge.from;
-    double longest = 0;
-    for (int k = 0; k < 3; ++k) {
-      const glm::dvec3 side = glm::dvec3(c[std::size_t(k + 1) % 3]) - glm::dvec3(c[std::size_t(k)]);
-      const double length = glm::length(side);
-      if (std::abs(glm::dot(side, along)) >= 0.999 * length * glm::length(along)) longest = std::max(longest, length);
-    }
-    return longest > 0 ? doubled_area / longest : 0;
-  }
-
   /// Whether the step's extension line crosses no visible line. A line that comes from one side and ends there counts,
   /// because another part continues it.
-  [[nodiscard]] bool is_clear(const Step& step) const {
+  [[nodiscard]] bool is_clear(const PlaneStep& step) const {
     return std::none_of(view_.drawing->parts.begin(), view_.drawing->parts.end(), [&](const DrawnPart& part) {
       const double a = part.from[axis_] - (step.at - same_line), b = part.to[axis_] - (step.at - same_line);
       if (part.hidden_by != 0 || (a < 0) == (b < 0)) return false;
@@ -136,7 +122,7 @@ class StepFinder {
   const glm::dvec3 direction_;  ///< of the axis, in the world
 };
 
-bool are_same(const Candidate& a, const Candidate& b) {
+bool are_same(const SteppedPlane& a, const SteppedPlane& b) {
   const double cosine = glm::dot(a.direction, b.direction);
   return std::abs(cosine) > 1 - along_axis * along_axis &&
          std::abs(a.place - (cosine > 0 ? b.place : -b.place)) <= std::max(a.slack, b.slack);
@@ -145,25 +131,25 @@ bool are_same(const Candidate& a, const Candidate& b) {
 }  // namespace
 
 std::vector<ViewSteps> steps_of(std::span<const SteppedView> views) {
-  std::vector<Candidate> planes;  // each plane once
+  std::vector<SteppedPlane> planes;  // each plane once
   for (std::size_t i = 0; i < views.size(); ++i) {
     const DimensionedView& view = *views[i].view;
     if (!view.is_dimensioned || view.surfaces == nullptr) continue;
     for (const int axis : {0, 1}) {
       if (!views[i].has_datum[axis]) continue;
-      for (Candidate& candidate : StepFinder(views[i], axis).run()) {
-        candidate.view = i;
+      for (SteppedPlane& plane : StepFinder(views[i], axis).run()) {
+        plane.view = i;
         const auto known =
-            std::find_if(planes.begin(), planes.end(), [&](const Candidate& c) { return are_same(c, candidate); });
+            std::find_if(planes.begin(), planes.end(), [&](const SteppedPlane& c) { return are_same(c, plane); });
         if (known == planes.end())
-          planes.push_back(candidate);
-        else if (candidate.is_clear && !known->is_clear)
-          *known = candidate;
+          planes.push_back(plane);
+        else if (plane.is_clear && !known->is_clear)
+          *known = plane;
       }
     }
   }
   std::vector<ViewSteps> all(views.size());
-  for (const Candidate& plane : planes) all[plane.view][std::size_t(plane.axis)].push_back(plane.step);
+  for (const SteppedPlane& plane : planes) all[plane.view][std::size_t(plane.axis)].push_back(plane.step);
   return all;
 }
 

@@ -11,14 +11,14 @@
 namespace frontmost::detail {
 
 /// A step along an axis of a view, in pixels.
-struct Step {
+struct PlaneStep {
   double at;      ///< along the axis
   double foot;    ///< along the other axis: the end of the step's lines that is nearest to the row of dimensions
   double length;  ///< of the visible lines together
 };
 
 /// The steps along axis 0 (to the right) and 1 (upwards).
-using ViewSteps = std::array<std::vector<Step>, 2>;
+using ViewSteps = std::array<std::vector<PlaneStep>, 2>;
 
 /// A view that may state steps.
 struct SteppedView {
