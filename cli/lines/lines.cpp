@@ -154,7 +154,7 @@ void warn_of(const Sheet& sheet, const Surfaces& surfaces, const Settings& setti
   if (sheet.left_out > 0)
     warn(
         {fmt::format("{} diameters and positions are left out for lack of room (a sheet has 64 diameters at most, a "
-                     "row 24 steps); use a larger --page or fewer views",
+                     "row 16 steps); use a larger --page or fewer views",
                      sheet.left_out)});
   if (sheet.undrawn > 0)
     warn({fmt::format("cylinders without a diameter, because no view along their axis shows them: {}", sheet.undrawn)});

@@ -606,9 +606,12 @@ TEST_F(DimensionsTest, StepsHavePositionsOnce) {
   draw({beside, above});
   expect_texts(dimensioned({.level = Dimensioning::all}), expected);
   // Nothing lies between the edges that the view from above shows and the row below the view.
-  EXPECT_EQ(position_rows_of(views(), Dimensioning::all),
-            (std::vector{glm::bvec2(false, true), glm::bvec2(true, false)}));
-  EXPECT_EQ(position_rows_of(views(), Dimensioning::holes), (std::vector{glm::bvec2(false), glm::bvec2(false)}));
+  const std::vector<glm::dvec2> rooms = position_rooms_of(views(), {.level = Dimensioning::all});
+  EXPECT_TRUE(rooms[0].x > 0 && rooms[0].y == 0 && rooms[1].x == 0 && rooms[1].y > 0);
+  for (const glm::dvec2& room : position_rooms_of(views(), {.level = Dimensioning::holes}))
+    EXPECT_EQ(room, glm::dvec2(0));
+  // Long numbers take more room.
+  EXPECT_GT(position_rooms_of(views(), {.level = Dimensioning::all, .numbers_per_unit = 1e4})[0].x, rooms[0].x + 5);
   EXPECT_EQ(dimensioned({.level = Dimensioning::holes}).count, 3u);
   draw({beside, above, NamedView::left, NamedView::right, NamedView::top, below});
   const Dimensions all = dimensioned({.level = Dimensioning::all});
@@ -630,18 +633,18 @@ TEST_F(DimensionsTest, HolesAndStepsShareNumbers) {
 
 TEST_F(DimensionsTest, StepsWithoutRoomAreCounted) {
   Mesh mesh;
-  // A block with 10 ribs: all or none of 19 equal faces have numbers.
+  // A block with 8 ribs: all or none of 14 equal faces have numbers.
   for (const double pitch : {12.0, 4.0}) {
     mesh = {};
     std::vector<double> places;
-    for (int i = 0; i < 20; ++i) places.push_back(pitch * (i / 2) + (i % 2) * pitch / 2);
+    for (int i = 0; i < 16; ++i) places.push_back(pitch * (i / 2) + (i % 2) * pitch / 2);
     add_cells(mesh, {{places, {0, 30}, {0, 10, 30}}}, [](int x, int, int z) { return z == 0 || x % 2 == 0; });
     scene_ = scene_of(mesh);
     draw({above, beside});
     const Dimensions all = dimensioned({.level = Dimensioning::all});
     const bool has_room = pitch > 10;
-    EXPECT_EQ(all.count, 3u + 1u + (has_room ? 18u : 0u)) << pitch;
-    EXPECT_EQ(all.left_out, has_room ? 0u : 18u) << pitch;
+    EXPECT_EQ(all.count, 3u + 1u + (has_room ? 14u : 0u)) << pitch;
+    EXPECT_EQ(all.left_out, has_room ? 0u : 14u) << pitch;
   }
 }
 

@@ -339,6 +339,15 @@ std::vector<DimensionedView> dimensioned_views(const std::vector<PlannedView>& v
   return all;
 }
 
+DimensionOptions dimension_options(const SheetOptions& options, const Scene& scene) {
+  const bool in_inches = is_in_inches(options, scene);
+  DimensionOptions numbers;
+  numbers.numbers_per_unit = millimetres_per_unit(options, scene) / (in_inches ? inch : 1);
+  numbers.decimals = {in_inches ? 3 : 2, in_inches && options.inch_fractions};
+  numbers.level = options.dimensions;
+  return numbers;
+}
+
 /// Sets the places of the views. \returns the plan.
 SheetPlan place_views(std::vector<PlannedView>& views, const Surfaces& surfaces, const SheetOptions& options) {
   std::vector<ViewCell> cells = cells_of(views, surfaces, options);
@@ -347,9 +356,10 @@ SheetPlan place_views(std::vector<PlannedView>& views, const Surfaces& surfaces,
   std::vector<OverallSizes> sizes(views.size());
   const std::vector<DimensionedView> dimensioned = dimensioned_views(views);
   if (options.dimensions != Dimensioning::none) sizes = overall_sizes_of(dimensioned);
-  const std::vector<glm::bvec2> rows = position_rows_of(dimensioned, options.dimensions);
+  const DimensionOptions numbers = dimension_options(options, surfaces.scene());
+  const std::vector<glm::dvec2> positions = position_rooms_of(dimensioned, numbers);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const glm::dvec2 room = room_for(sizes[i], rows[i], {.level = options.dimensions});
+    const glm::dvec2 room = room_for(sizes[i], positions[i], numbers.text_height);
     if (room.x > 0) cells[i].room_before.x = std::max(cells[i].room_before.x, views[i].taken.x + room.x);
     if (room.y > 0) cells[i].room_behind.y = std::max(cells[i].room_behind.y, views[i].taken.y + room.y);
   }
@@ -367,11 +377,6 @@ SheetPlan place_views(std::vector<PlannedView>& views, const Surfaces& surfaces,
 /// block if these will be added.
 void add_dimensions(Sheet& sheet, const std::vector<PlannedView>& views, const std::vector<PageBox>& marks,
                     const Scene& scene, const SheetOptions& options) {
-  DimensionOptions numbers;
-  const bool in_inches = is_in_inches(options, scene);
-  numbers.numbers_per_unit = millimetres_per_unit(options, scene) / (in_inches ? inch : 1);
-  numbers.decimals = {in_inches ? 3 : 2, in_inches && options.inch_fractions};
-  numbers.level = options.dimensions;
   const glm::dvec2 size(sheet.page.width, sheet.page.height);
   PageBox area{glm::dvec2(page_rim), size - page_rim};
   std::vector<PageBox> taken = marks;
@@ -380,7 +385,7 @@ void add_dimensions(Sheet& sheet, const std::vector<PlannedView>& views, const s
     area = {space.low, space.high};
     taken.push_back({space.block, space.high});
   }
-  Dimensions all = place_dimensions(dimensioned_views(views), area, taken, numbers);
+  Dimensions all = place_dimensions(dimensioned_views(views), area, taken, dimension_options(options, scene));
   if (all.count > 0) sheet.page.layers.push_back(std::move(all.layer));
   sheet.left_out = all.left_out;
   sheet.undrawn = all.undrawn;

@@ -673,27 +673,23 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
   pen.origin(at(datum, row));
 }
 
-/// Millimetres that rows of positions occupy on the left of a view and below it.
-glm::dvec2 room_of(const glm::bvec2& rows, Dimensioning level) {
-  const double room = positions_room + (level >= Dimensioning::all ? jog_room : 0);
-  return {rows.y ? room : 0, rows.x ? room : 0};
+/// Millimetres that a row of positions along an axis occupies.
+double position_room(const Extent& extent, const DimensionOptions& options) {
+  // No number of the row has more digits before the point than the overall size.
+  const std::string longest = std::to_string(std::int64_t(std::min(9e15, extent.size * options.numbers_per_unit))) +
+                              "." + std::string(std::size_t(options.decimals), '0');
+  const double long_room = text_width(longest, options.text_height) + options.text_height + 5 * text_distance;
+  return std::max(positions_room, long_room) + (options.level >= Dimensioning::all ? jog_room : 0);
 }
 
 struct PlannedRows {
-  std::vector<glm::bvec2> rows;  ///< as position_rows_of()
+  std::vector<glm::dvec2> rooms;  ///< as position_rooms_of()
   std::vector<ViewSteps> steps;
 };
 
-/// The rows of positions of all views, and their steps. `measured` may be empty below Dimensioning::holes.
-PlannedRows plan_rows(std::span<const DimensionedView> views, const std::vector<MeasuredView>& measured,
-                      Dimensioning level) {
-  PlannedRows planned{std::vector<glm::bvec2>(views.size(), glm::bvec2(false)), std::vector<ViewSteps>(views.size())};
-  if (level < Dimensioning::holes) return planned;
-  for (std::size_t i = 0; i < views.size(); ++i)
-    planned.rows[i] = glm::bvec2(views[i].is_dimensioned &&
-                                 std::any_of(measured[i].circles.begin(), measured[i].circles.end(),
-                                             [](const SeenCircle& c) { return c.round->turn >= least_turn; }));
-  if (level < Dimensioning::all) return planned;
+/// The views as steps_of() takes them.
+std::vector<SteppedView> stepped_views(std::span<const DimensionedView> views,
+                                       const std::vector<MeasuredView>& measured) {
   std::vector<SteppedView> stepped;
   for (std::size_t i = 0; i < views.size(); ++i) {
     SteppedView& view = stepped.emplace_back(SteppedView{&views[i], glm::bvec2(false), {}});
@@ -711,13 +707,25 @@ PlannedRows plan_rows(std::span<const DimensionedView> views, const std::vector<
         for (const SeenFlats& seen : measured[k].flats) cover(*seen.flats);
     std::sort(view.covered.begin(), view.covered.end());
   }
-  planned.steps = steps_of(stepped);
-  for (std::size_t i = 0; i < views.size(); ++i)
-    for (const int axis : {0, 1})
-      planned.rows[i][axis] = planned.rows[i][axis] || !planned.steps[i][std::size_t(axis)].empty();
-  return planned;
+  return stepped;
 }
 
+/// The rows of positions of all views, and their steps. `measured` may be empty below Dimensioning::holes.
+PlannedRows plan_rows(std::span<const DimensionedView> views, const std::vector<MeasuredView>& measured,
+                      const DimensionOptions& options) {
+  PlannedRows planned{std::vector<glm::dvec2>(views.size(), glm::dvec2(0)), std::vector<ViewSteps>(views.size())};
+  if (options.level < Dimensioning::holes) return planned;
+  if (options.level >= Dimensioning::all) planned.steps = steps_of(stepped_views(views, measured));
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!views[i].is_dimensioned || measured[i].box.is_empty()) continue;
+    const bool has_circles = std::any_of(measured[i].circles.begin(), measured[i].circles.end(),
+                                         [](const SeenCircle& c) { return c.round->turn >= least_turn; });
+    for (const int axis : {0, 1})
+      if (has_circles || !planned.steps[i][std::size_t(axis)].empty())
+        planned.rooms[i][1 - axis] = position_room(measured[i].extent(axis), options);
+  }
+  return planned;
+}
 void validate(const DimensionOptions& options) {
   if (!(options.numbers_per_unit > 0 && std::isfinite(options.numbers_per_unit)))
     throw Error(ErrorCode::bad_argument, "numbers_per_unit", "must be above 0 and finite");
@@ -778,18 +786,16 @@ std::vector<OverallSizes> overall_sizes_of(std::span<const DimensionedView> view
   return all;
 }
 
-std::vector<glm::bvec2> position_rows_of(std::span<const DimensionedView> views, Dimensioning level) {
+std::vector<glm::dvec2> position_rooms_of(std::span<const DimensionedView> views, const DimensionOptions& options) {
   std::vector<MeasuredView> measured;
-  if (level >= Dimensioning::holes)
+  if (options.level >= Dimensioning::holes)
     for (const DimensionedView& view : views) measured.emplace_back(view);
-  return plan_rows(views, measured, level).rows;
+  return plan_rows(views, measured, options).rooms;
 }
 
-glm::dvec2 room_for(const OverallSizes& sizes, const glm::bvec2& rows, const DimensionOptions& options) {
-  const glm::dvec2 more = room_of(rows, options.level);
-  const double text_height = options.text_height;
-  return {more.x + (sizes.height ? first_distance + text_height + 2 * text_distance : 0),
-          more.y + (sizes.width ? first_distance + extension_overshoot + text_distance : 0)};
+glm::dvec2 room_for(const OverallSizes& sizes, const glm::dvec2& positions, double text_height) {
+  return {positions.x + (sizes.height ? first_distance + text_height + 2 * text_distance : 0),
+          positions.y + (sizes.width ? first_distance + extension_overshoot + text_distance : 0)};
 }
 
 Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBox& area, std::span<const PageBox> taken,
@@ -806,7 +812,7 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
   Dimensions all;
   DimensionPen pen(options, obstacles);
   Diameters diameters{options, pen, obstacles};
-  const PlannedRows planned = plan_rows(views, measured, options.level);
+  const PlannedRows planned = plan_rows(views, measured, options);
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (measured[i].box.is_empty()) continue;
     for (const int axis : {0, 1}) {
@@ -820,7 +826,7 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
       } else if (extent.flats != nullptr && options.level >= Dimensioning::all && diameters.take(*extent.flats)) {
         text = flats_sign + text;
       }
-      const glm::dvec2 within = views[i].taken + room_of(planned.rows[i], options.level);
+      const glm::dvec2 within = views[i].taken + planned.rooms[i];
       draw_overall_size(pen, measured[i], within, axis, extent, text);
       ++all.count;
     }
@@ -833,7 +839,8 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
       if (options.level >= Dimensioning::all)
         for (Diameters::Group& flats : diameters.flats_of(measured[i])) groups[i].push_back(std::move(flats));
       for (const int axis : {0, 1})
-        if (const Extent extent = measured[i].extent(axis); planned.rows[i][axis] && extent.diameter == nullptr)
+        if (const Extent extent = measured[i].extent(axis);
+            planned.rooms[i][1 - axis] > 0 && extent.diameter == nullptr)
           draw_positions(pen, measured[i], views[i].taken, axis, extent, groups[i], planned.steps[i][std::size_t(axis)],
                          options, all);
     }

@@ -46,11 +46,13 @@ struct OverallSizes {
 /// Decides which overall sizes each view has. Each direction of space has one size, in the first view that shows the
 /// direction in true length, level or upright. Views that are not dimensioned have no sizes.
 [[nodiscard]] std::vector<OverallSizes> overall_sizes_of(std::span<const DimensionedView> views);
-/// Whether each view may have rows of running dimensions: below the view (x), and on its left (y). Views that show
-/// circles may have both; steps need one.
-[[nodiscard]] std::vector<glm::bvec2> position_rows_of(std::span<const DimensionedView> views, Dimensioning level);
+/// Millimetres that rows of running dimensions occupy on the left of each view (x) and below it (y); 0 without a row.
+/// Views that show circles have both rows; steps need one.
+[[nodiscard]] std::vector<glm::dvec2> position_rooms_of(std::span<const DimensionedView> views,
+                                                        const DimensionOptions& options);
 /// Millimetres that sizes and positions occupy on the left of the view and below it, in addition to other marks.
-[[nodiscard]] glm::dvec2 room_for(const OverallSizes& sizes, const glm::bvec2& rows, const DimensionOptions& options);
+/// `positions` is from position_rooms_of().
+[[nodiscard]] glm::dvec2 room_for(const OverallSizes& sizes, const glm::dvec2& positions, double text_height);
 
 /// The text of a number, without trailing zeros, with at most so many decimals or three significant digits, whichever
 /// is more. If a half would have to be rounded, the text has one more digit: "50", "12.7", "1.875". Fractions are
@@ -70,7 +72,7 @@ struct Dimensions {
 /// diameter, which the corners of its polygon do not reach. Circles at the end of a cone or chamfer, and arcs of little
 /// more than a half circle or less, have none. Circles with a diameter have positions, too: running dimensions from the
 /// lower left corner of their view, one for each distance, unless a round part bounds the view there. Steps share these
-/// rows (steps_of()), at most 24 in one. Blind holes have depths behind their diameters; hexagons and squares of plane
+/// rows (steps_of()), at most 16 in one. Blind holes have depths behind their diameters; hexagons and squares of plane
 /// faces have a width across flats. Hidden circles and faces have no dimension. At most 64 diameters stand on leader
 /// lines. They avoid lines and texts of the drawing and `taken`, and stay within `area` (the page within its frame).
 /// O(lines + rounds). \throws Error bad_argument for options out of range.

@@ -11,7 +11,7 @@
 namespace frontmost::detail {
 namespace {
 
-constexpr std::size_t most_steps = 24, fewest_alike = 5;
+constexpr std::size_t most_steps = 16, fewest_alike = 5;
 
 /// Places numbers as near to their extension lines as they have room, by isotonic regression: numbers that would touch
 /// form blocks, and a block has its mean place. \returns false if there is no room. `row` ascends.

@@ -27,7 +27,7 @@ struct NumberRoom {
 };
 
 /// The positions of a row whose numbers have room: circles first, then the longest steps. Each distance comes once.
-/// `away` is the direction from the view to the row. At most 24 steps are in a row. Steps of equal length, if there are
+/// `away` is the direction from the view to the row. At most 16 steps are in a row. Steps of equal length, if there are
 /// 5 or more, as of a modelled thread, are stated all or not at all. Steps and circles that are left out are counted.
 /// Quadratic in the numbers that have room.
 [[nodiscard]] std::vector<Position> chosen_positions(std::vector<Position> positions, double away,
