@@ -648,6 +648,23 @@ TEST_F(DimensionsTest, StepsWithoutRoomAreCounted) {
   }
 }
 
+TEST_F(DimensionsTest, StepsWithoutRoomMoveToAnotherView) {
+  Mesh mesh;
+  // Two blocks on a plate, 20 and 21 high: one of them is stated in the view from the right, which shows it, too.
+  add_cells(mesh, {{{0, 20, 40, 80}, {0, 20, 40, 50}, {0, 10, 20, 21, 40}}}, [](int x, int y, int z) {
+    return z == 0 || (x == 0 && z < 2) || (x == 1 && y == 0) || (x == 2 && y == 1 && z < 3);
+  });
+  scene_ = scene_of(mesh);
+  draw({beside});
+  const Dimensions alone = dimensioned({.level = Dimensioning::all});
+  expect_texts(alone, {"80", "40", "20", "40", "10", "21"});
+  EXPECT_EQ(alone.left_out, 1u);
+  draw({beside, NamedView::right});
+  const Dimensions all = dimensioned({.level = Dimensioning::all});
+  expect_texts(all, {"80", "40", "50", "20", "40", "21", "20", "40", "30", "20"});
+  EXPECT_EQ(all.left_out, 0u);
+}
+
 TEST_F(DimensionsTest, FacetsAreNoSteps) {
   Mesh slab, peg;
   add_rounded_slab(slab, {100, 60}, 7);

@@ -22,6 +22,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 #include "rounds/found_rounds.h"
 #include "sheets/dimensions/obstacles.h"
@@ -618,10 +619,11 @@ constexpr double positions_room = first_distance + extension_overshoot + 14;  //
 constexpr double jog_room = 3.5;                                              // more, if numbers are moved aside
 constexpr double least_gap = 2, most_moved = 8;                               // millimetres, of numbers moved aside
 
-/// Draws the positions of circles and steps along an axis, as running dimensions. `taken` as for draw_overall_size().
+/// Draws the positions of circles and steps along an axis, as running dimensions. `taken` as for draw_overall_size();
+/// `missed`: planes of steps that had no room so far.
 void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec2& taken, int axis, const Extent& e,
                     const std::vector<Diameters::Group>& groups, const std::vector<PlaneStep>& steps,
-                    const DimensionOptions& options, Dimensions& all) {
+                    std::set<std::size_t>& missed, const DimensionOptions& options, Dimensions& all) {
   const bool is_level = axis == 0;
   const double row = is_level ? view.box.high.y + first_distance + taken.y : view.box.low.x - first_distance - taken.x;
   const double away = is_level ? 1 : -1, datum = is_level ? e.low : e.high, forwards = is_level ? 1 : -1;
@@ -635,8 +637,11 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
                            circle.centre[1 - axis] + away * (circle.radius + extension_gap),
                            std::numeric_limits<double>::infinity()});
   for (const PlaneStep& step : steps) {
+    if (step.is_spare && !missed.contains(step.plane)) continue;
+    missed.insert(step.plane);
     const glm::dvec2 place = view.on_page(at(step.at, step.foot));
-    positions.push_back({(place[axis] - datum) * forwards, place[1 - axis] + away * extension_gap, step.length});
+    positions.push_back(
+        {(place[axis] - datum) * forwards, place[1 - axis] + away * extension_gap, step.length, step.plane});
   }
   const bool has_all = options.level >= Dimensioning::all;
   const double thickness = options.text_height + text_distance, infinity = std::numeric_limits<double>::infinity();
@@ -647,6 +652,7 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
             e.high - e.low - (thickness + text_distance) / 2};
   const std::vector<Position> chosen = chosen_positions(std::move(positions), away, room, all.left_out);
   if (chosen.empty()) return;
+  for (const Position& p : chosen) missed.erase(p.plane);
   const bool has_jogs = std::any_of(chosen.begin(), chosen.end(),
                                     [](const Position& p) { return std::abs(p.place - p.distance) > same_place; });
   const double end = row + away * (extension_overshoot + (has_jogs ? jog_room : 0));
@@ -721,7 +727,9 @@ PlannedRows plan_rows(std::span<const DimensionedView> views, const std::vector<
     const bool has_circles = std::any_of(measured[i].circles.begin(), measured[i].circles.end(),
                                          [](const SeenCircle& c) { return c.round->turn >= least_turn; });
     for (const int axis : {0, 1})
-      if (has_circles || !planned.steps[i][std::size_t(axis)].empty())
+      if (has_circles ||
+          std::any_of(planned.steps[i][std::size_t(axis)].begin(), planned.steps[i][std::size_t(axis)].end(),
+                      [](const PlaneStep& step) { return !step.is_spare; }))
         planned.rooms[i][1 - axis] = position_room(measured[i].extent(axis), options);
   }
   return planned;
@@ -833,6 +841,7 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
   }
   if (options.level >= Dimensioning::diameters) {
     std::vector<std::vector<Diameters::Group>> groups(views.size());
+    std::set<std::size_t> missed;
     for (std::size_t i = 0; i < views.size(); ++i) {
       if (!views[i].is_dimensioned) continue;
       groups[i] = diameters.groups_of(measured[i], all);
@@ -842,8 +851,9 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
         if (const Extent extent = measured[i].extent(axis);
             planned.rooms[i][1 - axis] > 0 && extent.diameter == nullptr)
           draw_positions(pen, measured[i], views[i].taken, axis, extent, groups[i], planned.steps[i][std::size_t(axis)],
-                         options, all);
+                         missed, options, all);
     }
+    all.left_out += missed.size();
     for (const std::vector<Diameters::Group>& of_view : groups) diameters.add(of_view, all);
     for (std::size_t i = 0; i < views.size() && options.level >= Dimensioning::all; ++i)
       if (views[i].is_dimensioned) diameters.add(diameters.radii_of(measured[i]), all);

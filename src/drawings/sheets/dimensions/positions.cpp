@@ -56,8 +56,10 @@ std::vector<Position> chosen_positions(std::vector<Position> positions, double a
   for (const Position& p : positions)
     if (each.empty() || p.distance >= each.back().distance + same_place)
       each.push_back(p);
-    else
+    else {
       each.back().length = std::max(each.back().length, p.length);
+      each.back().plane = std::min(each.back().plane, p.plane);
+    }
   std::stable_sort(each.begin(), each.end(), [](const Position& a, const Position& b) { return a.length > b.length; });
   std::vector<Position> chosen;
   std::size_t steps = 0;
@@ -76,7 +78,7 @@ std::vector<Position> chosen_positions(std::vector<Position> positions, double a
       if (place_numbers(wanted, room)) more = std::move(wanted);
     }
     if (is_step && count >= fewest_alike && more.size() - chosen.size() < count) more = chosen;
-    left_out += count - (more.size() - chosen.size());
+    if (!is_step) left_out += count - (more.size() - chosen.size());
     if (is_step) steps += more.size() - chosen.size();
     chosen = std::move(more);
     begin = end;

@@ -10,12 +10,15 @@ namespace frontmost::detail {
 inline constexpr double same_place = 0.05;  // millimetres of paper
 inline constexpr double same_size = 1e-3;   // as a share of the size
 
+inline constexpr std::size_t no_plane = std::size_t(-1);
+
 /// A running dimension; all but `length` in millimetres on the page.
 struct Position {
-  double distance;   ///< from the datum
-  double foot;       ///< where the extension line begins, along the other axis
-  double length;     ///< of a step's lines, in pixels; infinite for a circle
-  double place = 0;  ///< of the number, from the datum
+  double distance;               ///< from the datum
+  double foot;                   ///< where the extension line begins, along the other axis
+  double length;                 ///< of a step's lines, in pixels; infinite for a circle
+  std::size_t plane = no_plane;  ///< of a step
+  double place = 0;              ///< of the number, from the datum
 };
 
 /// The room for the numbers of a row, in millimetres.
@@ -28,8 +31,8 @@ struct NumberRoom {
 
 /// The positions of a row whose numbers have room: circles first, then the longest steps. Each distance comes once.
 /// `away` is the direction from the view to the row. At most 16 steps are in a row. Steps of equal length, if there are
-/// 5 or more, as of a modelled thread, are stated all or not at all. Steps and circles that are left out are counted.
-/// Quadratic in the numbers that have room.
+/// 5 or more, as of a modelled thread, are stated all or not at all. Adds the number of circles without room to
+/// `left_out`. Quadratic in the numbers that have room.
 [[nodiscard]] std::vector<Position> chosen_positions(std::vector<Position> positions, double away,
                                                      const NumberRoom& room, std::size_t& left_out);
 

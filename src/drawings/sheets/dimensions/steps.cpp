@@ -131,7 +131,7 @@ bool are_same(const SteppedPlane& a, const SteppedPlane& b) {
 }  // namespace
 
 std::vector<ViewSteps> steps_of(std::span<const SteppedView> views) {
-  std::vector<SteppedPlane> planes;  // each plane once
+  std::vector<SteppedPlane> planes, spares;  // `planes` has each plane once
   for (std::size_t i = 0; i < views.size(); ++i) {
     const DimensionedView& view = *views[i].view;
     if (!view.is_dimensioned || view.surfaces == nullptr) continue;
@@ -141,15 +141,23 @@ std::vector<ViewSteps> steps_of(std::span<const SteppedView> views) {
         plane.view = i;
         const auto known =
             std::find_if(planes.begin(), planes.end(), [&](const SteppedPlane& c) { return are_same(c, plane); });
+        plane.step.plane = std::size_t(known - planes.begin());
         if (known == planes.end())
           planes.push_back(plane);
         else if (plane.is_clear && !known->is_clear)
           *known = plane;
+        else
+          spares.push_back(plane);
       }
     }
   }
   std::vector<ViewSteps> all(views.size());
   for (const SteppedPlane& plane : planes) all[plane.view][std::size_t(plane.axis)].push_back(plane.step);
+  for (SteppedPlane& spare : spares) {
+    if (spare.view <= planes[spare.step.plane].view) continue;
+    spare.step.is_spare = true;
+    all[spare.view][std::size_t(spare.axis)].push_back(spare.step);
+  }
   return all;
 }
 
