@@ -564,6 +564,16 @@ TEST_F(DimensionsTest, HolesThatFaceEachOtherDiffer) {
   EXPECT_EQ(dimensioned({.level = Dimensioning::all}).undrawn, 1u);
 }
 
+TEST_F(DimensionsTest, PinsInBlindHolesHaveNoDepths) {
+  Mesh mesh;
+  add_plate(mesh, {blind_hole, shallow_hole});
+  add_rings(mesh, {15, 15}, {{0, 10}, {5, 10}, {5, 28}, {0, 28}});
+  scene_ = scene_of(mesh);
+  draw({above});
+  expect_texts(dimensioned({.level = Dimensioning::all}),
+               {"60", "30", "15", "45", "15", "\u230010", "\u230010\u21a76"});
+}
+
 /// A solid of the filled cells of a grid.
 void add_cells(Mesh& mesh, const std::array<std::vector<double>, 3>& places,
                const std::function<bool(int, int, int)>& is_filled) {

@@ -466,11 +466,13 @@ struct Diameters {
     return groups;
   }
 
-  /// The blind hole of which a view shows the rim; null if there is none.
+  /// The blind hole of which a view shows the rim; null if there is none. The end of a pin in a hole is no rim.
   [[nodiscard]] const Round* hole_at(const Round& rim, const MeasuredView& view) const {
     if (!has_all()) return nullptr;
     const auto found = std::find_if(view.holes.begin(), view.holes.end(), [&](const Round* hole) {
-      return is_same_radius(*hole, rim) && is_coaxial(*hole, rim);
+      const double from_floor = glm::dot(hole->to - rim.from, hole->axis);
+      return is_same_radius(*hole, rim) && is_coaxial(*hole, rim) &&
+             from_floor <= hole->depth + same_axis * hole->radius;
     });
     return found == view.holes.end() ? nullptr : *found;
   }
@@ -640,8 +642,10 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
     if (step.is_spare && !missed.contains(step.plane)) continue;
     missed.insert(step.plane);
     const glm::dvec2 place = view.on_page(at(step.at, step.foot));
-    positions.push_back(
-        {(place[axis] - datum) * forwards, place[1 - axis] + away * extension_gap, step.length, step.plane});
+    const double distance = (place[axis] - datum) * forwards;
+    // So near to an end of the view, two extension lines look like one.
+    if (distance < least_gap / 2 || distance > e.high - e.low - least_gap / 2) continue;
+    positions.push_back({distance, place[1 - axis] + away * extension_gap, step.length, step.plane});
   }
   const bool has_all = options.level >= Dimensioning::all;
   const double thickness = options.text_height + text_distance, infinity = std::numeric_limits<double>::infinity();
