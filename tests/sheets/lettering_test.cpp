@@ -112,6 +112,8 @@ TEST(Lettering, EveryLetterOfLatin1IsThereAndNoOtherOne) {
     const auto [known, is_new] = shapes.try_emplace(shape, code);
     EXPECT_TRUE(is_new) << unsigned(code) << " looks like " << unsigned(known->second);
   }
+  for (const char* const sign : {"\xE2\x8C\x80", "\xE2\x86\xA7"})
+    EXPECT_NE(shape_of(sign), box) << "diameter and depth";
   // Characters without a shape become a box each, and are never left out.
   for (const char* const odd : {"\n", "\x1b", "\x7f", "\xff", "\xc3"}) EXPECT_EQ(shape_of(odd), box) << odd;
   EXPECT_EQ(lettered(std::string(3, '\0')).paths.size(), 3u);
@@ -129,7 +131,8 @@ TEST(Lettering, NoLetterLeavesItsWidthOrItsLine) {
     EXPECT_TRUE(group.bulges.size() == group.points.size());
   };
   for (char32_t code = 1; code < 0x800; ++code) check(utf8(code));  // includes the accents of Central Europe
-  for (const char* const text : {"\xE2\x8C\x80", "\xE2\x82\xAC", "\xE2\x89\xA4", "\xE2\x80\x9E", "\xE2\x80\xA6"})
+  for (const char* const text :
+       {"\xE2\x8C\x80", "\xE2\x86\xA7", "\xE2\x82\xAC", "\xE2\x89\xA4", "\xE2\x80\x9E", "\xE2\x80\xA6"})
     check(text);
 }
 
