@@ -687,7 +687,7 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
 double position_room(const Extent& extent, const DimensionOptions& options) {
   // No number of the row has more digits before the point than the overall size.
   const std::string longest = std::to_string(std::int64_t(std::min(9e15, extent.size * options.numbers_per_unit))) +
-                              "." + std::string(std::size_t(options.decimals), '0');
+                              "." + std::string(std::size_t(options.decimals.most), '0');
   const double long_room = text_width(longest, options.text_height) + options.text_height + 5 * text_distance;
   return std::max(positions_room, long_room) + (options.level >= Dimensioning::all ? jog_room : 0);
 }
