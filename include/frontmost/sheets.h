@@ -122,6 +122,39 @@ struct Pen {
   std::vector<double> dashes{};
 };
 
+/// The part of a text that lies at its place: its beginning, its middle or its end.
+enum class TextAlign : std::uint8_t { left, centre, right };
+/// The height of a text that lies at its place: the lower edge of capitals, their middle or their upper edge.
+enum class TextLine : std::uint8_t { bottom, middle, top };
+
+struct TextStyle {
+  double height = 3.5;  ///< millimetres, of capitals and digits with the pen's width: 1.8, 2.5, 3.5, 5, 7, 10, 14, 20
+  double angle = 0;     ///< radians by which the text is turned about its place, counter-clockwise for the reader
+  TextAlign align = TextAlign::left;
+  TextLine line = TextLine::bottom;
+};
+
+/// A text of a page, which programs can search. PDF shows it in the strokes of add_text(). SVG and DXF name a font, so
+/// that letters depend on the program.
+struct PlacedText {
+  std::string text;  ///< UTF-8, any text
+  glm::dvec2 at{0};  ///< millimetres
+  TextStyle style;   ///< height from 0.01 to 1000 mm
+};
+
+/// linear: the distance of two points along a direction. position: the same, from an origin that several share.
+enum class DimensionKind : std::uint8_t { linear, position, diameter, radius };
+
+/// A dimension of a drawing, for CAD programs: what it measures, and the paths and the text of its group that show it.
+struct PageDimension {
+  DimensionKind kind = DimensionKind::linear;
+  glm::dvec2 from{0}, to{0};  ///< measured points; opposite points of a circle; centre and point of an arc
+  glm::dvec2 line{0};         ///< a point of the dimension line, or the end of the leader
+  double angle = 0;           ///< linear, position: radians of the measured direction, as in TextStyle; 0: horizontal
+  double factor = 1;          ///< the stated number per millimetre of the page
+  std::uint32_t first_path = 0, path_count = 0, text = 0;  ///< indices of PageGroup::paths and PageGroup::texts
+};
+
 /// Consecutive points of a group, joined in order. A single point is a dot.
 struct PagePath {
   std::uint32_t first = 0, count = 0;
@@ -141,9 +174,12 @@ struct PageGroup {
   std::vector<PageColor> fills{};  ///< empty: nothing is filled; otherwise one for each path (nonzero winding rule)
   /// Opacity of the group as a whole, 0 to 255: the group is drawn on a transparent ground and then blended.
   std::uint8_t opacity = 255;
+  std::vector<PlacedText> texts{};  ///< over the paths, in the colour of the pen
+  std::vector<PageDimension> dimensions{};
 
   /// Appends a path without arcs.
   void add(std::span<const glm::dvec2> corners, bool is_closed, bool is_part = false);
+  [[nodiscard]] bool is_empty() const { return paths.empty() && texts.empty(); }
 };
 
 struct PageLayer {
@@ -159,14 +195,15 @@ struct Page {
 
 /// Turns each dash of a page into a path of its own, for plotters, which cannot draw dashes by themselves. Patterns run
 /// along whole paths. Between corners of 25 degrees or more, a pattern is stretched so that both ends are drawn (ISO
-/// 128-2). Fills are unchanged. O(points + dashes). \throws Error as validate() does; limit_exceeded for more than 20
-/// million dashes.
+/// 128-2). Fills and texts are unchanged; dimensions of dashed groups are left out. O(points + dashes). \throws Error
+/// as validate() does; limit_exceeded for more than 20 million dashes.
 [[nodiscard]] Page with_real_dashes(Page page, const Execution& execution = {});
 
 enum class PageFormat : std::uint8_t { svg, pdf, dxf, json };
 
 /// \throws Error bad_argument or limit_exceeded, naming layer and group: sizes out of range; points that are not finite
-/// or more than 1000 m away; bulges beyond 10; paths of missing points; lists of different lengths.
+/// or more than 1000 m away; bulges beyond 10; paths of missing points; dimensions of missing paths or texts; lists of
+/// different lengths.
 void validate(const Page& page);
 
 /// The page format that a file's suffix names; none for other suffixes.
@@ -175,13 +212,14 @@ void validate(const Page& page);
 // How pages become files:
 //
 //   SVG    Sizes in millimetres, one user unit to the millimetre. Layers and groups are named as in Inkscape. No style
-//          sheets, clip paths, masks or transforms.
+//          sheets, clip paths, masks or transforms, except the rotation of texts that are not level.
 //   PDF    Version 1.5, compressed. Layers are optional content, groups with an opacity transparency groups. Version
-//          1.6 with a scaled user unit if a side exceeds 5080 mm.
-//   DXF    AutoCAD release 12, in millimetres ($INSUNITS), y up from the page's lower left corner. Lines only: LINE,
-//          POLYLINE, ARC, CIRCLE and POINT, without widths. Each group is a layer, "2_VISIBLE-WHEEL" after layer and
-//          group; from a thousand groups on, each page layer is one. Names have at most 31 letters, digits and -. A
-//          layer has the pen's colour; a black pen's depends on the digit that begins the page layer's name. Line types
+//          1.6 with a scaled user unit if a side exceeds 5080 mm. Texts have a font of the strokes of add_text().
+//   DXF    AutoCAD 2000, in millimetres ($INSUNITS), y up from the page's lower left corner. LINE, LWPOLYLINE, ARC,
+//          CIRCLE, POINT, TEXT, and DIMENSION with a block of its lines and its text; positions are lines and texts.
+//          Each group is a layer, "2_VISIBLE-WHEEL" after layer and group; from a thousand groups on, each page layer
+//          is one. Names have at most 31 letters, digits and -. A layer has the pen's width, rounded to the nearest of
+//          AutoCAD's, and its colour; a black pen's depends on the digit that begins the page layer's name. Line types
 //          are HIDDEN, CENTER and PHANTOM for one, two and more dashes in a period, with "2" or "X2" appended if much
 //          shorter or longer; pens that share a name get the first pen's dashes.
 //   JSON   All of the page, unchanged.
@@ -203,6 +241,7 @@ struct PenTravel {
   double down = 0;  ///< length of drawn lines
   double up = 0;    ///< length of moves between paths, beginning at the page's corner
   std::size_t paths = 0, points = 0, arcs = 0;
+  std::size_t texts = 0;  ///< elements of PageGroup::texts, which a pen cannot draw
 };
 [[nodiscard]] PenTravel travel_of(const Page& page);
 
@@ -214,25 +253,16 @@ void save(const Figure& figure, const std::string& path, std::optional<PageForma
 
 // Lettering: text as strokes of one pen, the same in every format and on every machine.
 //
-// Fonts look different in every viewer, and plotters have none. Text therefore becomes paths of lines and arcs. It is
-// placed by one of nine points of the box around its capitals:
+// Fonts look different in every viewer, and plotters have none. Text therefore becomes paths of lines and arcs, by
+// default. It is placed by one of nine points of the box around its capitals:
 //
 //   left         centre         right
 //    x-------------x-------------x     top: upper edge of capitals
 //    |  A  4      1 2 . 5    m m  |     middle
 //    x-------------x-------------x     bottom: base line
 
-/// The part of a text that lies at its place: its beginning, its middle or its end.
-enum class TextAlign : std::uint8_t { left, centre, right };
-/// The height of a text that lies at its place: the lower edge of capitals, their middle or their upper edge.
-enum class TextLine : std::uint8_t { bottom, middle, top };
-
-struct TextStyle {
-  double height = 3.5;  ///< millimetres, of capitals and digits with the pen's width: 1.8, 2.5, 3.5, 5, 7, 10, 14, 20
-  double angle = 0;     ///< radians by which the text is turned about its place, counter-clockwise for the reader
-  TextAlign align = TextAlign::left;
-  TextLine line = TextLine::bottom;
-};
+/// strokes: paths of lines and arcs. text: PlacedText, which programs can search and edit.
+enum class Lettering : std::uint8_t { strokes, text };
 
 /// The pen for letters of this height after ISO 3098 type B: a tenth of the height.
 [[nodiscard]] Pen text_pen(double height);
@@ -241,8 +271,9 @@ struct TextStyle {
 /// 7/10 as high as capitals and descend 3/10 below. `group` should have text_pen() of the same height. Available are
 /// ASCII, Latin-1 with the signs for diameter, degree, plus-minus and times, letters of Central and Northern Europe,
 /// quotes, dashes and some signs of drawings. Anything else, including invalid UTF-8 and control characters, is a box
-/// as high as a capital. Blanks have no path. O(text).
-void add_text(PageGroup& group, std::string_view text, const glm::dvec2& at, const TextStyle& style = {});
+/// as high as a capital. Blanks have no path. Lettering::text appends to PageGroup::texts instead. O(text).
+void add_text(PageGroup& group, std::string_view text, const glm::dvec2& at, const TextStyle& style = {},
+              Lettering lettering = Lettering::strokes);
 
 /// Millimetres from the left edge of the first character to the right edge of the last, with their pen; 0 without any.
 [[nodiscard]] double text_width(std::string_view text, double height = 3.5);

@@ -573,7 +573,7 @@ TEST_F(LinesCommand, AnEmptyDrawingIsAFileWithAWarning) {
 TEST_F(LinesCommand, FormatIsOfTheFileWithoutASuffix) {
   const std::string drawn = succeed("lines cube.stl -o b.svg -o - --format dxf").out;
   EXPECT_THAT(read("b.svg"), HasSubstr("</svg>"));
-  EXPECT_THAT(drawn, HasSubstr("AC1009"));
+  EXPECT_THAT(drawn, HasSubstr("AC1015"));
 }
 
 TEST_F(LinesCommand, WhatCannotBeMeantIsRefused) {

@@ -182,6 +182,7 @@ std::vector<Span> drawn_of(const Ruler& ruler, const Pattern& pattern) {
 PageGroup with_cut_dashes(const PageGroup& group, std::size_t most, const Execution& execution) {
   const Pattern pattern(group.pen.dashes);
   PageGroup cut{group.name, group.pen};
+  cut.texts = group.texts;
   cut.pen.dashes.clear();
   std::size_t steps = 0;
   const auto poll = [&] {  // only sometimes, because a check takes longer than a dash

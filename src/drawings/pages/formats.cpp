@@ -8,15 +8,11 @@
 #include "frontmost/base.h"
 
 namespace frontmost::detail {
-namespace {
 
-constexpr char hex[] = "0123456789ABCDEF";
-
-void append_hex(unsigned value, std::string& text) {
-  for (int shift = 12; shift >= 0; shift -= 4) text += hex[value >> shift & 15];
+void append_hex(unsigned value, std::string& text, int digits) {
+  constexpr char hex[] = "0123456789ABCDEF";
+  for (int shift = 4 * (digits - 1); shift >= 0; shift -= 4) text += hex[value >> shift & 15];
 }
-
-}  // namespace
 
 std::optional<Arc> arc_between(const glm::dvec2& from, const glm::dvec2& to, double bulge) {
   constexpr double flat = 1e-4;  // a tenth of the rounding unit of coordinates

@@ -46,6 +46,22 @@ struct Join {
 /// The arc that a whole path forms, if all its joins run along one circle in one direction; none otherwise.
 [[nodiscard]] std::optional<Arc> whole_arc(const PageGroup& group, const PagePath& path);
 
+/// The point of a text on its base line, at its beginning, its middle or its end by its alignment.
+[[nodiscard]] inline glm::dvec2 base_of(const PlacedText& text) {
+  const double below = text.style.line == TextLine::bottom ? 0 : text.style.line == TextLine::middle ? 0.5 : 1;
+  return text.at + below * text.style.height * glm::dvec2(std::sin(text.style.angle), std::cos(text.style.angle));
+}
+
+/// Where the point of a text lies between the text's beginning, 0, and its end, 1.
+[[nodiscard]] inline double share_before(TextAlign align) {
+  return align == TextAlign::left ? 0 : align == TextAlign::centre ? 0.5 : 1;
+}
+/// The beginning of a text on its base line.
+[[nodiscard]] inline glm::dvec2 begin_of(const PlacedText& text) {
+  const double before = share_before(text.style.align) * text_width(text.text, text.style.height);
+  return base_of(text) - before * glm::dvec2(std::cos(text.style.angle), -std::sin(text.style.angle));
+}
+
 /// Rounds a coordinate in millimetres to thousandths. Coordinates are at most 1e9, so the result fits.
 [[nodiscard]] inline std::int64_t thousandths(double value) { return std::llround(value * 1000); }
 [[nodiscard]] inline glm::i64vec2 thousandths(const glm::dvec2& p) { return {thousandths(p.x), thousandths(p.y)}; }
@@ -97,6 +113,9 @@ class PageText {
 [[nodiscard]] std::string json_text(std::string_view name);
 /// A PDF text string in UTF-16, cleaned by printable_text(), as hexadecimal digits in brackets.
 [[nodiscard]] std::string pdf_text(std::string_view name);
+
+/// Appends the last hexadecimal digits of a number.
+void append_hex(unsigned value, std::string& text, int digits = 4);
 
 /// The writers of the formats. They get valid pages, and do not commit the file.
 void save_svg(const Page& page, OutputFile& file, const Execution& execution);

@@ -2,6 +2,7 @@
 // A page as JSON: all of its data under the names of the library's types, with as many digits as other formats.
 //
 //   {"width": ..., "layers": [{"name": ..., "groups": [{"pen": {...}, "paths": [{"points": [[x, y], ...]}, ...]}]}]}
+#include "base/decimal.h"
 #include "pages/formats.h"
 
 namespace frontmost::detail {
@@ -53,6 +54,48 @@ void write_path(PageText& out, const PageGroup& group, std::size_t i) {
   out << "}";
 }
 
+void write_point(PageText& out, const char* name, const glm::dvec2& p) {
+  out << ", \"" << name << "\": [";
+  out.decimal(p.x) << ", ";
+  out.decimal(p.y) << "]";
+}
+
+void write_text(PageText& out, const PlacedText& text) {
+  constexpr const char* aligns[] = {"left", "centre", "right"};
+  constexpr const char* lines[] = {"bottom", "middle", "top"};
+  out << "{\"text\": " << json_text(text.text);
+  write_point(out, "at", text.at);
+  out << ", \"height\": ";
+  out.decimal(text.style.height) << ", \"angle\": ";
+  out.decimal(text.style.angle, 9) << ", \"align\": \"" << aligns[int(text.style.align)] << "\", \"line\": \""
+                                   << lines[int(text.style.line)] << "\"}";
+}
+
+void write_dimension(PageText& out, const PageDimension& dimension) {
+  constexpr const char* kinds[] = {"linear", "position", "diameter", "radius"};
+  out << "{\"kind\": \"" << kinds[int(dimension.kind)] << '"';
+  write_point(out, "from", dimension.from);
+  write_point(out, "to", dimension.to);
+  write_point(out, "line", dimension.line);
+  out << ", \"angle\": ";
+  out.decimal(dimension.angle, 9) << ", \"factor\": " << general_text(dimension.factor, 9)
+                                  << ", \"first_path\": " << dimension.first_path
+                                  << ", \"path_count\": " << dimension.path_count << ", \"text\": " << dimension.text
+                                  << "}";
+}
+
+/// Writes a list under its name, unless it is empty.
+template <class List, class Write>
+void write_list(PageText& out, const char* name, const List& list, const Write& write) {
+  if (list.empty()) return;
+  out << ", \"" << name << "\": [";
+  for (const auto& one : list) {
+    out << (&one == list.data() ? "\n" : ",\n");
+    write(out, one);
+  }
+  out << "]";
+}
+
 }  // namespace
 
 void save_json(const Page& page, OutputFile& file, const Execution& execution) {
@@ -72,7 +115,10 @@ void save_json(const Page& page, OutputFile& file, const Execution& execution) {
         progress.step();
         write_path(out, group, i);
       }
-      out << "]}";
+      out << "]";
+      write_list(out, "texts", group.texts, write_text);
+      write_list(out, "dimensions", group.dimensions, write_dimension);
+      out << "}";
     }
     out << "]}";
   }

@@ -14,23 +14,27 @@
 namespace frontmost {
 namespace {
 
-constexpr double least_side = 0.01, most_side = 1e5, farthest = 1e6, most_width = 1000, most_bulge = 10;
+constexpr double least_side = 0.01, most_side = 1e5, farthest = 1e6, most_width = 1000, most_bulge = 10,
+                 most_angle = 1000;
 
 [[noreturn]] void refuse(const std::string& where, const char* reason) {
   throw Error(ErrorCode::bad_argument, where, reason);
 }
 
+// Conditions are written so that NaN fails, here and below.
+void check_place(const glm::dvec2& p, const std::string& where) {
+  if (!(std::abs(p.x) <= farthest && std::abs(p.y) <= farthest))
+    refuse(where, "a point is not finite, or farther than 1000 m from the page");
+}
+
 void check_group(const PageGroup& group, const std::string& where) {
   const Pen& pen = group.pen;
-  // The condition is written so that NaN fails, here and below.
   if (!(pen.width >= 0 && pen.width <= most_width)) refuse(where, "the pen's width must be from 0 to 1000 mm");
   if (pen.dashes.size() % 2 != 0) refuse(where, "dashes and gaps must come in pairs");
   for (const double dash : pen.dashes)
     if (!(dash >= 0.001 && dash <= most_side)) refuse(where, "dashes and gaps must be from 0.001 to 100000 mm");
   if (group.points.size() > 0xFFFFFFFFu) throw Error(ErrorCode::limit_exceeded, where, "over 2^32 points");
-  for (const glm::dvec2& p : group.points)
-    if (!(std::abs(p.x) <= farthest && std::abs(p.y) <= farthest))
-      refuse(where, "a point is not finite, or farther than 1000 m from the page");
+  for (const glm::dvec2& p : group.points) check_place(p, where);
   if (!group.bulges.empty() && group.bulges.size() != group.points.size())
     refuse(where, "bulges and points differ in number");
   for (const double bulge : group.bulges)
@@ -42,6 +46,20 @@ void check_group(const PageGroup& group, const std::string& where) {
       refuse(where, "a path has no points, or points beyond the last one of the page");
   if (!group.paths.empty() && group.paths[0].is_part)
     refuse(where, "the first path is part of a path, but there is none before it");
+  for (const PlacedText& text : group.texts) {
+    check_place(text.at, where);
+    if (!(text.style.height >= least_side && text.style.height <= most_width &&
+          std::abs(text.style.angle) <= most_angle))
+      refuse(where, "a text's height must be from 0.01 to 1000 mm, its angle at most 1000 radians");
+  }
+  for (const PageDimension& dimension : group.dimensions) {
+    for (const glm::dvec2& p : {dimension.from, dimension.to, dimension.line}) check_place(p, where);
+    if (!(std::abs(dimension.angle) <= most_angle && dimension.factor >= 1e-15 && dimension.factor <= 1e15))
+      refuse(where, "a dimension's angle must be at most 1000 radians, its factor from 1e-15 to 1e15");
+    if (dimension.first_path > group.paths.size() || dimension.path_count > group.paths.size() - dimension.first_path ||
+        dimension.text >= group.texts.size())
+      refuse(where, "a dimension has paths or a text beyond the last one of its group");
+  }
 }
 
 /// Millimetres per pixel, as in style sheets, so that a figure is as large on a page as the picture in a browser.
@@ -151,7 +169,8 @@ PenTravel travel_of(const Page& page) {
   PenTravel sum;
   glm::dvec2 pen(0);
   for (const PageLayer& layer : page.layers)
-    for (const PageGroup& group : layer.groups)
+    for (const PageGroup& group : layer.groups) {
+      sum.texts += group.texts.size();
       for (const PagePath& path : group.paths) {
         sum.up += glm::distance(pen, group.points[path.first]);
         ++sum.paths;
@@ -164,6 +183,7 @@ PenTravel travel_of(const Page& page) {
         }
         pen = group.points[path.is_closed ? path.first : path.first + path.count - 1];
       }
+    }
   return sum;
 }
 

@@ -6,11 +6,13 @@
 //                            0.5 w [] 0 d             a group: its pen
 //                            10 20 m 30 40 l S        a path: move, line, stroke
 //                            q /F128 gs /G0 Do Q      a group with an opacity: form 0, composited as a whole
+//                            BT ... Tm /T0 5 Tf <00> Tj ET    a text in font 0, whose glyphs are those of add_text()
 //
 // There is no date and no file identifier, so a page always gives the same bytes.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <new>
 
 #include "pages/formats.h"
@@ -70,11 +72,35 @@ struct PdfStream {
 };
 #endif
 
+/// The characters of all texts of a file. A font holds 256 of them, so the number is 256 * font + code.
+struct PdfLetter {
+  std::string utf8;
+  std::size_t number = 0;
+};
+using PdfLetters = std::map<char32_t, PdfLetter>;
+constexpr std::size_t letters_per_font = 256;
+
+PdfLetters letters_of(std::span<const Page> pages) {
+  PdfLetters letters;
+  for (const Page& page : pages)
+    for (const PageLayer& layer : page.layers)
+      for (const PageGroup& group : layer.groups)
+        for (const PlacedText& text : group.texts)
+          for (std::string_view rest = text.text; !rest.empty();) {
+            const std::string_view before = rest;
+            const char32_t code = take_character(rest);
+            letters[code].utf8 = before.substr(0, before.size() - rest.size());
+          }
+  std::size_t number = 0;
+  for (auto& [code, letter] : letters) letter.number = number++;
+  return letters;
+}
+
 /// Writes the operators that draw all layers.
 class PdfContent {
  public:
-  PdfContent(const Page& page, PageText& out, double scale, WritingProgress& progress)
-      : page_(page), out_(out), scale_(scale), progress_(progress) {}
+  PdfContent(const Page& page, PageText& out, double scale, WritingProgress& progress, const PdfLetters& letters)
+      : page_(page), out_(out), scale_(scale), progress_(progress), letters_(letters) {}
 
   void write_page() {
     std::size_t form = 0;
@@ -101,6 +127,19 @@ class PdfContent {
     out_ << "0 0 0 rg 0 0 0 RG\n";
     write_group(group);
   }
+
+  /// Writes a glyph of letters ten units high, y up. Glyphs inherit the colour of the text.
+  void write_glyph(const std::string& utf8) {
+    PageGroup glyph;
+    add_text(glyph, utf8, {0, 0}, {10});
+    for (glm::dvec2& p : glyph.points) p.y = -p.y;
+    for (double& bulge : glyph.bulges) bulge = -bulge;
+    out_.fixed(thousandths(advance_of(utf8))) << " 0 d0 1 w\n";
+    for (const PagePath& path : glyph.paths) write_path(glyph, path);
+    if (!glyph.paths.empty()) out_ << "S\n";
+  }
+  /// The way to the next letter, in tenths of the height: the letter, and the gap of add_text() beside its pen.
+  [[nodiscard]] static double advance_of(const std::string& utf8) { return text_width(utf8, 10) + 2; }
 
   using Opacities = std::array<bool, 256>;
   /// The opacities that a stream uses.
@@ -137,7 +176,33 @@ class PdfContent {
       }
     }
     if (points > 0) out_ << "S\n";
+    if (group.texts.empty() || group.pen.color.opacity == 0) return;
+    set({group.pen.color, group.pen.color});  // viewers disagree which of the two glyphs inherit
+    if (!group.pen.dashes.empty()) out_ << "[] 0 d\n";
+    for (const PlacedText& text : group.texts) write_text(text);
   }
+
+  void write_text(const PlacedText& text) {
+    if (text.text.empty()) return;
+    const glm::dvec2 along(std::cos(text.style.angle), -std::sin(text.style.angle));
+    out_ << "BT ";
+    for (const double value : {along.x, along.y, along.y, -along.x}) out_.fixed(std::llround(value * 1e9), 9) << ' ';
+    point(begin_of(text));
+    out_ << "Tm";
+    std::string_view rest = text.text;
+    while (!rest.empty()) {
+      const std::size_t font = number_of(rest) / letters_per_font;
+      std::string codes;
+      for (; !rest.empty() && number_of(rest) / letters_per_font == font; (void)take_character(rest))
+        append_hex(unsigned(number_of(rest) % letters_per_font), codes, 2);
+      out_ << " /T" << font << ' ';
+      out_.fixed(thousandths(text.style.height)) << " Tf <" << codes << "> Tj";
+    }
+    out_ << " ET\n";
+  }
+
+  /// The number of the first letter of a text.
+  [[nodiscard]] std::size_t number_of(std::string_view text) const { return letters_.at(take_character(text)).number; }
 
   /// Writes only the colours that change.
   void set(const PathPaint& paint) {
@@ -203,6 +268,7 @@ class PdfContent {
   PageText& out_;
   const double scale_;
   WritingProgress& progress_;
+  const PdfLetters& letters_;
   PageColor fill_, line_;  ///< black and opaque at the begin of a page or a form
   States states_;
 };
@@ -226,8 +292,10 @@ struct PdfPage {
 class PdfWriter {
  public:
   PdfWriter(std::span<const Page> pages, OutputFile& file, const Execution& execution)
-      : out_(file), progress_(pages, execution) {
+      : out_(file), progress_(pages, execution), letters_(letters_of(pages)) {
     for (const Page& page : pages) number(page);
+    for (std::size_t first = 0; first < letters_.size(); first += letters_per_font) fonts_.push_back(take(2));
+    if (!letters_.empty()) glyphs_ = take(letters_.size());
   }
 
   void write() {
@@ -239,6 +307,7 @@ class PdfWriter {
       write_page(page, write_stream(page, nullptr, page.length));
       for (const PdfPage::Form& form : page.forms) write_form(page, form);
     }
+    for (std::size_t i = 0; i < fonts_.size(); ++i) write_font(i);
     for (const Layer& layer : layers_)
       begin(layer.object) << "<< /Type /OCG /Name " << pdf_text(*layer.name) << " >>\nendobj\n";
     write_end();
@@ -254,12 +323,14 @@ class PdfWriter {
     std::size_t object;
   };
 
+  /// Takes the next numbers for objects. \returns the first one.
+  std::size_t take(std::size_t count) {
+    places_.resize(places_.size() + count);
+    return places_.size() - count;
+  }
+
   void number(const Page& page) {
-    const auto next = [&](std::size_t count) {
-      places_.resize(places_.size() + count);
-      return places_.size() - count;
-    };
-    const std::size_t object = pages_.empty() ? std::size_t(first_page) : next(3);
+    const std::size_t object = pages_.empty() ? std::size_t(first_page) : take(3);
     const double unit = std::max(1.0, std::ceil(std::max(page.width, page.height) * points_per_millimetre / 14400));
     PdfPage& sheet =
         pages_.emplace_back(PdfPage{&page, object, object + 1, object + 2, {}, {}, unit, points_per_millimetre / unit});
@@ -268,7 +339,7 @@ class PdfWriter {
       std::size_t at = 0;
       while (at < is_taken.size() && (is_taken[at] || *layers_[at].name != layer.name)) ++at;
       if (at == layers_.size()) {
-        layers_.push_back({&layer.name, next(1)});
+        layers_.push_back({&layer.name, take(1)});
         is_taken.push_back(true);
       }
       is_taken[at] = true;
@@ -276,7 +347,7 @@ class PdfWriter {
     }
     for (const PageLayer& layer : page.layers)
       for (const PageGroup& group : layer.groups)
-        if (group.opacity < 255) sheet.forms.push_back({&group, next(2)});
+        if (group.opacity < 255) sheet.forms.push_back({&group, take(2)});
   }
 
   PageText& begin(std::size_t object) {
@@ -291,7 +362,7 @@ class PdfWriter {
     const std::uint64_t start = out_.size();
     PdfStream stream{out_};
     PageText operators([&stream](std::string_view bytes) { stream.write(bytes); });
-    PdfContent content(*page.page, operators, page.scale, progress_);
+    PdfContent content(*page.page, operators, page.scale, progress_, letters_);
     form ? content.write_form(*form) : content.write_page();
     operators.flush();
     stream.finish();
@@ -306,7 +377,7 @@ class PdfWriter {
   void write_form(const PdfPage& page, const PdfPage::Form& form) {
     const PageGroup& group = *form.group;
     glm::dvec2 low(0), high(page.page->width, page.page->height);
-    if (group.bulges.empty() && !group.points.empty()) {
+    if (group.bulges.empty() && group.texts.empty() && !group.points.empty()) {
       low = high = group.points[0];
       for (const glm::dvec2& p : group.points) {
         low = glm::min(low, p);
@@ -324,7 +395,9 @@ class PdfWriter {
          {low.x - group.pen.width, low.y - group.pen.width, high.x + group.pen.width, high.y + group.pen.width})
       out_.fixed(thousandths(side)) << ' ';
     out_ << "] /Group << /S /Transparency /I true >> /Resources << ";
-    write_all_states(states) << ">> ";
+    write_all_states(states);
+    write_font_references();
+    out_ << ">> ";
     (void)write_stream(page, &group, form.object + 1);
   }
 
@@ -333,6 +406,56 @@ class PdfWriter {
     write_states(states.fills, "/F", "/ca");
     write_states(states.lines, "/S", "/CA");
     return out_ << ">> ";
+  }
+
+  void write_font_references() {
+    for (std::size_t i = 0; i < fonts_.size(); ++i) {
+      out_ << (i == 0 ? "/Font << /T" : "/T") << i << ' ';
+      reference(fonts_[i]);
+    }
+    if (!fonts_.empty()) out_ << ">> ";
+  }
+
+  /// Writes a font, its characters, by which programs search and copy text, and its glyphs.
+  void write_font(std::size_t font) {
+    std::vector<const PdfLetter*> letters;
+    for (const auto& [code, letter] : letters_)
+      if (letter.number / letters_per_font == font) letters.push_back(&letter);
+    begin(fonts_[font]) << "<< /Type /Font /Subtype /Type3 /FontBBox [0 -3 10 13] /FontMatrix [.1 0 0 .1 0 0] "
+                           "/FirstChar 0 /LastChar "
+                        << letters.size() - 1 << "\n/Widths [ ";
+    for (const PdfLetter* const letter : letters) out_.fixed(thousandths(PdfContent::advance_of(letter->utf8))) << ' ';
+    out_ << "]\n/Encoding << /Type /Encoding /Differences [ 0 ";
+    for (std::size_t i = 0; i < letters.size(); ++i) out_ << "/c" << i << ' ';
+    out_ << "] >>\n/CharProcs << ";
+    for (std::size_t i = 0; i < letters.size(); ++i) {
+      out_ << "/c" << i << ' ';
+      reference(glyphs_ + letters[i]->number);
+    }
+    out_ << ">>\n/Resources << >> /ToUnicode ";
+    reference(fonts_[font] + 1) << ">>\nendobj\n";
+    std::string last;
+    append_hex(unsigned(letters.size() - 1), last, 2);
+    write_small_stream(fonts_[font] + 1, [&](PageText& out) {
+      out << "/CIDInit /ProcSet findresource begin 12 dict begin begincmap /CMapName /Letters def /CMapType 2 def\n"
+             "1 begincodespacerange <00> <FF> endcodespacerange\n1 beginbfrange <00> <"
+          << last << "> [";
+      for (const PdfLetter* const letter : letters) out << " <" << pdf_text(letter->utf8).substr(5);
+      out << " ] endbfrange\nendcmap CMapName currentdict /CMap defineresource pop end end";
+    });
+    for (const PdfLetter* const letter : letters)
+      write_small_stream(glyphs_ + letter->number, [&](PageText& out) {
+        PdfContent(*pages_[0].page, out, 1, progress_, letters_).write_glyph(letter->utf8);
+      });
+  }
+
+  template <class Write>
+  void write_small_stream(std::size_t object, const Write& write) {
+    std::string bytes;
+    PageText text([&bytes](std::string_view more) { bytes += more; });
+    write(text);
+    text.flush();
+    begin(object) << "<< /Length " << bytes.size() << " >>\nstream\n" << bytes << "\nendstream\nendobj\n";
   }
 
   PageText& layer_references() {
@@ -365,6 +488,7 @@ class PdfWriter {
       }
       out_ << ">> ";
     }
+    write_font_references();
     out_ << "/Properties << ";
     for (std::size_t i = 0; i < page.layers.size(); ++i) {
       out_ << "/L" << i << ' ';
@@ -393,6 +517,9 @@ class PdfWriter {
 
   PageText out_;
   WritingProgress progress_;
+  const PdfLetters letters_;
+  std::vector<std::size_t> fonts_;  ///< the object of each font; the next one is of its characters
+  std::size_t glyphs_ = 0;          ///< the object of the first letter; others follow by their numbers
   std::vector<PdfPage> pages_;
   std::vector<Layer> layers_;
   std::vector<std::uint64_t> places_ = std::vector<std::uint64_t>(first_free);

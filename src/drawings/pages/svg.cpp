@@ -70,6 +70,7 @@ class SvgWriter {
         if (!group.paths[i].is_part) write_filled(group, i);
       }
     }
+    for (const PlacedText& text : group.texts) write_text(text, group.pen.color);
     out_ << "</g>\n";
   }
 
@@ -105,6 +106,27 @@ class SvgWriter {
     do write_path(group, group.paths[i]);
     while (++i < group.paths.size() && group.paths[i].is_part);
     out_ << "\"/>\n";
+  }
+
+  /// Viewers stretch the text to the width of its strokes, whatever their font.
+  void write_text(const PlacedText& text, const PageColor& of) {
+    constexpr double font_size = 1.4;  // of Arial and Helvetica, for capitals of height 1
+    constexpr const char* anchors[] = {"start", "middle", "end"};
+    const glm::dvec2 at = base_of(text);
+    out_ << "<text x=\"";
+    millimetres(at.x) << "\" y=\"";
+    millimetres(at.y) << "\" font-family=\"Arial, Helvetica, sans-serif\" font-size=\"";
+    millimetres(font_size * text.style.height)
+        << "\" text-anchor=\"" << anchors[int(text.style.align)] << "\" textLength=\"";
+    millimetres(text_width(text.text, text.style.height)) << "\" lengthAdjust=\"spacingAndGlyphs\"";
+    if (text.style.angle != 0) {
+      out_ << " transform=\"rotate(";
+      millimetres(glm::degrees(-text.style.angle)) << ' ';
+      millimetres(at.x) << ' ';
+      millimetres(at.y) << ")\"";
+    }
+    color("fill", of);
+    out_ << " stroke=\"none\" xml:space=\"preserve\">" << xml_text(text.text) << "</text>\n";
   }
 
   void color(std::string_view what, const PageColor& color) {

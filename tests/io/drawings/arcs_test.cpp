@@ -79,12 +79,12 @@ TEST(Arcs, OfOneCircleAreOneInDxf) {
   EXPECT_EQ(dxf_of({{{60, 20}, {50, 30}, {40, 20}}, {quarter, quarter, 0}}).kind, "ARC");
   EXPECT_EQ(dxf_of({{{60, 20}, {40, 20}}, {1, 1}, true}).kind, "CIRCLE");
   // Centres or radii differ by more than rounding.
-  EXPECT_EQ(dxf_of({{{60, 20}, {50, 30}, {40, 20.05}}, {quarter, quarter, 0}}).kind, "POLYLINE");
+  EXPECT_EQ(dxf_of({{{60, 20}, {50, 30}, {40, 20.05}}, {quarter, quarter, 0}}).kind, "LWPOLYLINE");
   // One path goes forth and back, another one and a half times around.
-  EXPECT_EQ(dxf_of({{{60, 20}, {40, 20}, {60, 20}}, {1, -1, 0}}).kind, "POLYLINE");
-  EXPECT_EQ(dxf_of({{{60, 20}, {40, 20}, {60, 20}, {40, 20}}, {1, 1, 1, 0}}).kind, "POLYLINE");
+  EXPECT_EQ(dxf_of({{{60, 20}, {40, 20}, {60, 20}}, {1, -1, 0}}).kind, "LWPOLYLINE");
+  EXPECT_EQ(dxf_of({{{60, 20}, {40, 20}, {60, 20}, {40, 20}}, {1, 1, 1, 0}}).kind, "LWPOLYLINE");
   // A path of an arc and a line.
-  EXPECT_EQ(dxf_of({{{60, 20}, {50, 30}, {40, 20}}, {quarter, 0, 0}}).kind, "POLYLINE");
+  EXPECT_EQ(dxf_of({{{60, 20}, {50, 30}, {40, 20}}, {quarter, 0, 0}}).kind, "LWPOLYLINE");
 }
 
 }  // namespace

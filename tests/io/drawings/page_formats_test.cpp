@@ -316,6 +316,7 @@ struct Entity {
   std::multimap<int, std::string> codes;
   [[nodiscard]] double number(int code) const { return std::stod(codes.find(code)->second); }
   [[nodiscard]] std::string text(int code) const { return codes.find(code)->second; }
+  [[nodiscard]] std::string last(int code) const { return std::prev(codes.upper_bound(code))->second; }
 };
 
 std::vector<Entity> entities_of(const std::string& dxf) {
@@ -334,23 +335,22 @@ std::vector<Entity> entities_of(const std::string& dxf) {
 
 TEST(Dxf, HoldsLinesArcsAndCirclesWithYUp) {
   const std::string dxf = saved(sample_page(), PageFormat::dxf);
-  EXPECT_TRUE(has(dxf, "9\n$ACADVER\n1\nAC1009\n"));
+  EXPECT_TRUE(has(dxf, "9\n$ACADVER\n1\nAC1015\n"));
   const std::vector<Entity> all = entities_of(dxf);
   std::string kinds;
   for (const Entity& entity : all) kinds += entity.kind + " ";
-  EXPECT_EQ(kinds,
-            "POLYLINE VERTEX VERTEX VERTEX SEQEND POLYLINE VERTEX VERTEX VERTEX SEQEND LINE ARC CIRCLE POINT "
-            "ENDSEC EOF ");
+  EXPECT_EQ(kinds, "LWPOLYLINE LWPOLYLINE LINE ARC CIRCLE POINT ENDSEC SECTION DICTIONARY DICTIONARY ENDSEC EOF ");
   EXPECT_EQ(all[0].text(8), "1_HIDDEN-AXLE");
-  EXPECT_EQ(all[5].text(8), "2_VISIBLE-WHEEL");
-  EXPECT_EQ(all[12].text(8), "2_VISIBLE-RING");
+  EXPECT_EQ(all[1].text(8), "2_VISIBLE-WHEEL");
+  EXPECT_EQ(all[4].text(8), "2_VISIBLE-RING");
   EXPECT_EQ(all[0].text(70), "0");
-  EXPECT_EQ(all[3].number(10), 20.5);
-  EXPECT_EQ(all[3].number(20), 37.654);
-  EXPECT_EQ(all[5].text(70), "1");
-  EXPECT_EQ(all[10].number(11), 2);
-  EXPECT_EQ(all[10].number(21), 47);
-  const Entity &arc = all[11], &circle = all[12];
+  EXPECT_EQ(all[0].text(90), "3");
+  EXPECT_EQ(all[0].last(10), "20.5");
+  EXPECT_EQ(all[0].last(20), "37.654");
+  EXPECT_EQ(all[1].text(70), "1");
+  EXPECT_EQ(all[2].number(11), 2);
+  EXPECT_EQ(all[2].number(21), 47);
+  const Entity &arc = all[3], &circle = all[4];
   // The arc from (60, 30) clockwise to (50, 20), with y up, is the quarter from 270 to 360 degrees.
   EXPECT_EQ(arc.number(10), 50);
   EXPECT_EQ(arc.number(20), 30);
@@ -365,28 +365,32 @@ TEST(Dxf, SaysItsUnitAndLeavesColoursAndLineTypesToLayers) {
   Page page = sample_page();
   const std::string dxf = saved(page, PageFormat::dxf);
   EXPECT_TRUE(has(dxf, "9\n$INSUNITS\n70\n4\n"));
-  EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n1_HIDDEN-AXLE\n70\n0\n62\n6\n6\nHIDDEN\n"));        // black, as hidden lines
-  EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n2_VISIBLE-WHEEL\n70\n0\n62\n1\n6\nCONTINUOUS\n"));  // red, as its pen
-  EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n2_VISIBLE-RING\n70\n0\n62\n7\n6\nCONTINUOUS\n"));
+  EXPECT_TRUE(has(dxf, "\n2\n1_HIDDEN-AXLE\n70\n0\n62\n6\n6\nHIDDEN\n370\n25\n"));        // black, as hidden lines
+  EXPECT_TRUE(has(dxf, "\n2\n2_VISIBLE-WHEEL\n70\n0\n62\n1\n6\nCONTINUOUS\n370\n50\n"));  // red, as its pen
+  EXPECT_TRUE(has(dxf, "\n2\n2_VISIBLE-RING\n70\n0\n62\n7\n6\nCONTINUOUS\n370\n13\n"));
   for (const Entity& entity : entities_of(dxf)) {
     EXPECT_EQ(entity.codes.count(6), 0u) << entity.kind;
     EXPECT_EQ(entity.codes.count(62), 0u) << entity.kind;
+    EXPECT_EQ(entity.codes.count(370), 0u) << entity.kind;
   }
   // Groups without names share a layer; entities state what differs from it.
   for (PageGroup& group : page.layers[1].groups) group.name.clear();
   page.layers[1].groups[1].pen.dashes = {1, 1};
   const std::vector<Entity> all = entities_of(saved(page, PageFormat::dxf));
-  EXPECT_EQ(all[5].text(8), "2_VISIBLE");
-  EXPECT_EQ(all[5].codes.count(62), 0u);
-  EXPECT_EQ(all[11].text(8), "2_VISIBLE");
-  EXPECT_EQ(all[11].text(62), "7");
-  EXPECT_EQ(all[11].text(6), "HIDDEN2");
+  EXPECT_EQ(all[1].text(8), "2_VISIBLE");
+  EXPECT_EQ(all[1].codes.count(62), 0u);
+  EXPECT_EQ(all[1].codes.count(370), 0u);
+  EXPECT_EQ(all[3].text(8), "2_VISIBLE");
+  EXPECT_EQ(all[3].text(62), "7");
+  EXPECT_EQ(all[3].text(6), "HIDDEN2");
+  EXPECT_EQ(all[3].text(370), "13");
 }
 
 TEST(Dxf, LineTypesHaveTheirDashesAndGaps) {
   // The pattern is 3.75 long: dashes are positive, gaps negative.
-  EXPECT_TRUE(has(saved(sample_page(), PageFormat::dxf),
-                  "2\nHIDDEN\n70\n0\n3\nDashed, in millimetres\n72\n65\n73\n2\n40\n3.75\n49\n3\n49\n-0.75\n"))
+  EXPECT_TRUE(
+      has(saved(sample_page(), PageFormat::dxf),
+          "2\nHIDDEN\n70\n0\n3\nDashed, in millimetres\n72\n65\n73\n2\n40\n3.75\n49\n3\n74\n0\n49\n-0.75\n74\n0\n"))
       << saved(sample_page(), PageFormat::dxf);
 }
 
@@ -406,8 +410,8 @@ TEST(Dxf, LineTypesHaveStandardNames) {
     if (entity.kind == "LINE") names.push_back(entity.codes.count(6) > 0 ? entity.text(6) : "BYLAYER");
   EXPECT_THAT(names, testing::ElementsAre("BYLAYER", "BYLAYER", "CENTER2", "CENTERX2", "HIDDEN", "PHANTOM",
                                           "CONTINUOUS", "HIDDEN"));
-  EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n6_CENTRE_LINES\n70\n0\n62\n1\n6\nCENTER\n"));
-  EXPECT_EQ(count(dxf, "0\nLTYPE\n"), 6u);
+  EXPECT_TRUE(has(dxf, "\n2\n6_CENTRE_LINES\n70\n0\n62\n1\n6\nCENTER\n"));
+  EXPECT_EQ(count(dxf, "0\nLTYPE\n"), 8u);  // with ByBlock and ByLayer
 }
 
 // The circle of a diameter sign is a path of two consecutive half circles that is not closed.
@@ -438,8 +442,10 @@ TEST(Dxf, BulgesTurnTheOtherWayRound) {
   page.layers = {{"slot \xC3\xA9 with a rather long name", {slot}}, {"", {}}, {"SLOT __ WITH A RATHER LONG", {slot}}};
   const std::string dxf = saved(page, PageFormat::dxf);
   const std::vector<Entity> all = entities_of(dxf);
-  EXPECT_EQ(all[2].number(42), -1);
-  EXPECT_EQ(all[1].codes.count(42), 0u);
+  EXPECT_EQ(all[0].codes.count(42), 2u);
+  EXPECT_EQ(all[0].number(42), -1);
+  // The bulges follow the second and the fourth point.
+  EXPECT_TRUE(has(dxf, "10\n30\n20\n90\n42\n-1\n10\n30\n20\n80\n10\n10\n20\n80\n42\n-1\n"));
   // Layers whose names would be equal are told apart.
   EXPECT_TRUE(has(dxf, "2\nSLOT_WITH_A_RATHER_LONG_NA\n"));
   EXPECT_TRUE(has(dxf, "2\nSLOT_WITH_A_RATHER_LONG\n"));
@@ -463,11 +469,11 @@ TEST(Dxf, EveryObjectHasItsLayerUnlessThereAreVeryMany) {
       if (entity.kind == "LINE") names.insert(entity.text(8));
     EXPECT_EQ(names.size(), many < 1000 ? many : 1);
     for (const std::string& name : names) {
-      EXPECT_TRUE(has(dxf, "0\nLAYER\n2\n" + name + "\n")) << name;
+      EXPECT_TRUE(has(dxf, "AcDbLayerTableRecord\n2\n" + name + "\n")) << name;
       EXPECT_EQ(name.rfind("2_VISIBLE", 0), 0u) << name;
       EXPECT_LE(name.size(), 31u);
     }
-    EXPECT_EQ(count(dxf, "0\nLAYER\n"), names.size());
+    EXPECT_EQ(count(dxf, "0\nLAYER\n"), names.size() + 1);  // with layer 0
   }
 }
 

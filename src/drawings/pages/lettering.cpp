@@ -313,9 +313,14 @@ double width_in_tenths(std::string_view text) {
 
 Pen text_pen(double height) { return {height / capital, {}}; }
 
-void add_text(PageGroup& group, std::string_view text, const glm::dvec2& at, const TextStyle& style) {
+void add_text(PageGroup& group, std::string_view text, const glm::dvec2& at, const TextStyle& style,
+              Lettering lettering) {
   if (text.empty()) return;
-  const double before = style.align == TextAlign::left ? 0 : style.align == TextAlign::centre ? 0.5 : 1;
+  if (lettering == Lettering::text) {
+    group.texts.push_back({std::string(text), at, style});
+    return;
+  }
+  const double before = detail::share_before(style.align);
   const double below = style.line == TextLine::bottom ? 0 : style.line == TextLine::middle ? 0.5 : 1;
   const glm::dvec2 shift(edge - before * width_in_tenths(text), edge - below * capital);
   const glm::dvec2 along = glm::dvec2(std::cos(style.angle), -std::sin(style.angle)) * (style.height / capital);
