@@ -25,6 +25,8 @@ FRONTMOST_WORDS(frontmost::Dimensioning, "dimensions",
                  {frontmost::Dimensioning::all, "all"}});
 FRONTMOST_WORDS(frontmost::DrawingStyle, "style",
                 {{frontmost::DrawingStyle::technical, "technical"}, {frontmost::DrawingStyle::figure, "figure"}});
+FRONTMOST_WORDS(frontmost::Lettering, "lettering",
+                {{frontmost::Lettering::strokes, "strokes"}, {frontmost::Lettering::text, "text"}});
 FRONTMOST_WORDS(frontmost::ProjectionMethod, "projection",
                 {{frontmost::ProjectionMethod::none, "none"},
                  {frontmost::ProjectionMethod::first_angle, "first_angle"},
@@ -104,7 +106,7 @@ HeldPage sheet_of(const std::shared_ptr<HeldSurfaces>& held, const py::object& v
                   const std::optional<std::vector<NamedView>>& hidden_views, DrawingStyle style,
                   const std::optional<double>& pen, const std::optional<double>& crease_angle,
                   const std::optional<double>& shortest_stroke, const std::optional<bool>& centre_lines, bool plot,
-                  const py::object& page, double margin, const std::optional<double>& scale,
+                  Lettering lettering, const py::object& page, double margin, const std::optional<double>& scale,
                   const std::optional<bool>& standard_scale, const std::optional<double>& millimetres_per_unit,
                   const std::optional<bool>& in_inches, bool inch_fractions,
                   const std::optional<std::map<std::string, std::string>>& title_block,
@@ -126,6 +128,7 @@ HeldPage sheet_of(const std::shared_ptr<HeldSurfaces>& held, const py::object& v
   options.shortest_stroke = shortest_stroke;
   options.centre_lines = centre_lines;
   options.plot = plot;
+  options.lettering = lettering;
   if (!page.is_none()) options.page = paper_of(page);
   options.margin = margin;
   options.scale = scale;
@@ -299,9 +302,10 @@ void bind_sheets(py::module_& m) {
            "sections"_a = py::list(), "uncut"_a = py::none(), "projection"_a = ProjectionMethod::first_angle,
            "dimensions"_a = Dimensioning::none, "hidden"_a = HiddenLines::none, "hidden_views"_a = py::none(),
            "style"_a = DrawingStyle::technical, "pen"_a = py::none(), "crease_angle"_a = py::none(),
-           "shortest_stroke"_a = py::none(), "centre_lines"_a = py::none(), "plot"_a = false, "page"_a = py::none(),
-           "margin"_a = 10.0, "scale"_a = py::none(), "standard_scale"_a = py::none(),
-           "millimetres_per_unit"_a = py::none(), "in_inches"_a = py::none(), "inch_fractions"_a = false,
+           "shortest_stroke"_a = py::none(), "centre_lines"_a = py::none(), "plot"_a = false,
+           "lettering"_a = Lettering::strokes, "page"_a = py::none(), "margin"_a = 10.0, "scale"_a = py::none(),
+           "standard_scale"_a = py::none(), "millimetres_per_unit"_a = py::none(), "in_inches"_a = py::none(),
+           "inch_fractions"_a = false,
            "title_block"_a = py::none(), "hatch"_a = py::none(), "stipple"_a = py::none(), "hatch_angle"_a = 45.0,
            "light"_a = py::none(), "casts_shadows"_a = true, "keeps_picture"_a = false, "threads"_a = 0,
            "progress"_a = py::none(), doc("Surfaces.draw_sheet"))

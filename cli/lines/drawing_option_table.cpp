@@ -181,6 +181,10 @@ constexpr Option drawing_options[] = {
      "all: also the radii of fillets, depths of blind holes, positions of steps and widths across flats.",
      Group::drawing, for_lines,
      [](Settings& s, const Given& g) { s.drawing.sheet.dimensions = Dimensioning(1 + g.choice<int>()); }},
+    {"lettering", 0, "strokes|text",
+     "How texts of sheets are written. strokes, the default: as lines of a pen, the same in every program. text: as "
+     "text that programs can search and edit; in DXF also dimensions that can be edited.",
+     Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.lettering = g.choice<Lettering>(); }},
     {"plot", 0, "",
      "Prepare the drawing for pen plotters: strokes are joined across objects and ordered for few lifts of the pen; "
      "strokes within half the --pen of others are left out; every dash is a line of its own.",

@@ -430,6 +430,7 @@ struct SheetOptions {
   /// of the pen. Strokes within half the width of seen lines from others are left out, see Strokes::covered. Use
   /// with_real_dashes() to make each dash a line.
   bool plot = false;
+  Lettering lettering = Lettering::strokes;  ///< of dimensions, sections and frame; text: not with `plot`
 
   // Paper and scale.
   /// None: A4; with `scale`, as large as the drawing, or the smallest of A4 to A0 with room for a title block as well.

@@ -348,6 +348,7 @@ class Surfaces:
                    style: Style = "technical", pen: float | None = None,
                    crease_angle: float | None = None, shortest_stroke: float | None = None,
                    centre_lines: bool | None = None, plot: bool = False,
+                   lettering: Literal["strokes", "text"] = "strokes",
                    page: str | tuple[float, float] | None = None, margin: float = 10.0, scale: float | None = None,
                    standard_scale: bool | None = None, millimetres_per_unit: float | None = None,
                    in_inches: bool | None = None, inch_fractions: bool = False,
@@ -363,7 +364,8 @@ class Surfaces:
         millimetres_per_unit: unit of the model's coordinates, in place of the file's. in_inches: unit of dimensions, by
         default True for models in inches; inch_fractions: as fractions down to 1/64 where exact to 0.0005. title_block:
         title, number, author, date, owner. hatch_angle, crease_angle: degrees. plot: strokes for plotters, joined, in an
-        order, and none in the ink of others.
+        order, and none in the ink of others. lettering: texts as strokes of a pen, or as text that programs can search and
+        edit.
         Raises Error: bad_argument, limit_exceeded.
         """
     def draw_figure(self, view: View, *, tolerance: float = 6.0, visible_only: bool = True,

@@ -9,6 +9,7 @@ Drawings have one or three pixels per millimetre. In the id map, every border be
 and nothing, must have ink beside it. All ink must lie beside a border between two triangles. Where parts are narrower
 than pixels and lie between their samples, the triangles are those of an id map of four times the resolution. ezdxf
 reads DXF, which must hold the content of the JSON. Views from all sides of one model are a sheet's views, one by one.
+A sheet is drawn in both kinds of lettering: its PDF must look the same, and its texts must be found in all formats.
 Programs that are not installed are skipped, and counted.
 """
 import json
@@ -150,13 +151,75 @@ def check_ink(program, drawing, folder, scale, outlines, edges):
     return len(inks)
 
 
+def check_lettering(program, folder):
+    """Returns how many of the programs are installed."""
+    title = "Two cubes, \u00e4 \u2264 \u2300"
+    sheet = ["builtin:cubes", "--views", "front,top", "--sections", "left", "--dimensions", "all", "--page", "a3",
+             "--title", title, "--number", "FM-17", "--owner", "50 % of\\P & <us>"]
+    for kind in ("strokes", "text"):
+        outputs = [word for suffix in ("svg", "pdf", "dxf", "json") for word in ("-o", folder / f"{kind}.{suffix}")]
+        run(program, "lines", *sheet, "--lettering", kind, *outputs)
+    groups = [group for layer in json.loads((folder / "text.json").read_text())["layers"] for group in layer["groups"]]
+    wanted = sorted(text["text"] for group in groups for text in group.get("texts", ()))
+    dimensions = [one for group in groups for one in group.get("dimensions", ())]
+    assert {title, "A-A", "FM-17", "Legal owner"} <= set(wanted) and len(dimensions) >= 3, wanted
+    root = xml.etree.ElementTree.parse(folder / "text.svg").getroot()
+    assert sorted(text.text for text in root.iter(SVG + "text")) == wanted
+    readers = 0
+    if shutil.which("pdftotext"):
+        readers += 1
+        words = sorted(run("pdftotext", "-raw", folder / "text.pdf", "-").split())
+        assert words == sorted(word for text in wanted for word in text.split()), words
+        assert not run("pdftotext", folder / "strokes.pdf", "-").split()
+    if shutil.which("pdftoppm"):
+        readers += 1
+        pictures = []
+        for kind in ("strokes", "text"):
+            run("pdftoppm", "-r", "150", "-gray", "-singlefile", folder / f"{kind}.pdf", folder / kind)
+            pictures.append(read_picture(folder / f"{kind}.pgm").astype(int))
+        # Poppler moves thin lines of pages, not of glyphs, to whole pixels.
+        differs, ink = (abs(pictures[0] - pictures[1]) > 130).sum(), (pictures[0] < INK).sum()
+        assert ink > 50000 and differs < ink / 1000, (differs, ink)
+    return readers + check_dxf_texts(folder, wanted, dimensions)
+
+
+def check_dxf_texts(folder, wanted, dimensions):
+    """Returns whether a DXF reader is installed."""
+    if ezdxf is None:
+        return 0
+    for kind in ("strokes", "text"):
+        document = ezdxf.readfile(str(folder / f"{kind}.dxf"))
+        audit = document.audit()
+        assert document.dxfversion == "AC1015" and not audit.errors and not audit.fixes, (audit.errors, audit.fixes)
+        entities = list(document.modelspace())
+        blocks = [part for one in entities if one.dxftype() == "DIMENSION" for part in document.blocks[one.dxf.geometry]]
+        texts = [text for text in entities + blocks if text.dxftype() == "TEXT"]
+        if kind == "strokes":
+            assert not blocks and not texts
+            continue
+        signs = {"%%c": "\u2300", "%%d": "\u00b0", "%%p": "\u00b1"}
+        plain = [ezdxf.lldxf.encoding.decode_dxf_unicode(re.sub("%%[cdp]", lambda sign: signs[sign[0]], text.dxf.text)) for text in texts]
+        assert sorted(plain) == wanted, plain
+        # Each dimension of the page, except running ones, is an entity with its number, which is the text.
+        shown = [one for one in entities if one.dxftype() == "DIMENSION"]
+        assert len(shown) == sum(one["kind"] != "position" for one in dimensions) > 0
+        for one in shown:
+            number = float(re.search("[0-9.]+$", one.dxf.text)[0])
+            scale = document.dimstyles.get(one.dxf.dimstyle).dxf.dimlfac
+            assert abs(one.dxf.actual_measurement - number) <= 0.0051 and scale > 0, (one.dxf.text, one.dxf.actual_measurement)
+            assert abs(one.get_measurement() * scale - number) <= 0.0051 + 0.001 * scale, (one.dxf.text, one.get_measurement())
+    return 1
+
+
 def main():
     program, checked = pathlib.Path(sys.argv[1]).resolve(), 0
     with tempfile.TemporaryDirectory() as folder:
         for view in VIEWS:
             checked += check_view(program, view, pathlib.Path(folder))
+        checked += check_lettering(program, pathlib.Path(folder))
     # Every view is checked by two programs at each scale and as DXF; the narrow view at one scale only, and not as DXF.
-    every = (2 * len(SCALES) + 1) * (len(VIEWS) - 1) + 2
+    # The sheet is checked by three programs.
+    every = (2 * len(SCALES) + 1) * (len(VIEWS) - 1) + 2 + 3
     print(f"{len(VIEWS)} drawings, {checked} times read, {every - checked} skipped for want of a reader")
 
 

@@ -117,7 +117,17 @@ def test_views_on_paper():
     xml.fromstring(sheet.svg)
     sheet = surfaces.draw_sheet(["front"], sections=["front"], dimensions="diameters", page="a3-landscape",
                                 title_block={"title": "Cubes", "author": "A. Appel"})
-    assert sheet.size == (420, 297) and "Cubes" in sheet.svg and (sheet.left_out, sheet.undrawn, sheet.prisms) == (0, 0, 0)
+    assert sheet.size == (420, 297) and "Cubes" in sheet.svg and "<text" not in sheet.svg and (sheet.left_out, sheet.undrawn, sheet.prisms) == (0, 0, 0)
+
+
+def test_texts_of_sheets():
+    surfaces = fm.Surfaces(fm.builtin("cubes"))
+    sheet = surfaces.draw_sheet(["front"], page="a4", title_block={"title": "Two cubes"}, lettering="text")
+    assert ">Two cubes</text>" in sheet.svg
+    with pytest.raises(ValueError, match="^lettering: "):
+        surfaces.draw_sheet(["front"], lettering="font")
+    with pytest.raises(fm.Error, match="plotters"):
+        surfaces.draw_sheet(["front"], lettering="text", plot=True)
 
 
 def test_figures_are_the_command_lines_files(cli):

@@ -358,6 +358,46 @@ TEST_F(DimensionsTest, ArcsHaveRadii) {
   EXPECT_EQ(all.layer.groups.at(1).points.size(), expected.points.size());
 }
 
+TEST_F(DimensionsTest, OfTextKnowWhatTheyMeasure) {
+  Mesh mesh;
+  add_rounded_slab(mesh, {100, 60}, 7);
+  add_peg(mesh, {20, 25, 10}, 6, 8);
+  add_peg(mesh, {80, 25, 10}, 6, 8);
+  scene_ = scene_of(mesh);
+  draw({NamedView::front, NamedView::top});
+  const DimensionOptions options{.level = Dimensioning::all, .numbers_per_unit = 2};
+  DimensionOptions of_text = options;
+  of_text.lettering = Lettering::text;
+  const Dimensions all = dimensioned(of_text), drawn = dimensioned(options);
+  ASSERT_EQ(all.count, 3u + 1u + 3u + 1u) << "sizes, diameters, positions, radii";
+  EXPECT_EQ(drawn.count, all.count);
+  ASSERT_EQ(all.layer.groups.size(), 1u);
+  const PageGroup& group = all.layer.groups[0];
+  EXPECT_EQ(group.paths.size(), drawn.layer.groups.at(0).paths.size()) << "the same lines";
+  EXPECT_TRUE(drawn.layer.groups[0].dimensions.empty() && drawn.layer.groups[0].texts.empty());
+  ASSERT_EQ(group.dimensions.size(), all.count);
+  std::map<DimensionKind, std::vector<std::string>> texts;
+  std::vector<int> uses(group.paths.size());
+  for (const PageDimension& dimension : group.dimensions) {
+    const std::string& text = group.texts.at(dimension.text).text;
+    texts[dimension.kind].push_back(text);
+    const glm::dvec2 way = dimension.to - dimension.from;
+    const bool is_round = dimension.kind == DimensionKind::diameter || dimension.kind == DimensionKind::radius;
+    const glm::dvec2 along(std::cos(dimension.angle), -std::sin(dimension.angle));
+    const double length = is_round ? glm::length(way) : std::abs(glm::dot(way, along));
+    const std::string digits = text.substr(text.find_last_not_of("0123456789.") + 1);
+    EXPECT_NEAR(length * dimension.factor, std::stod(digits), 0.01) << text;
+    for (std::size_t i = 0; i < dimension.path_count; ++i) ++uses.at(dimension.first_path + i);
+  }
+  EXPECT_THAT(texts[DimensionKind::linear], testing::UnorderedElementsAre("200", "120", "36"));
+  EXPECT_THAT(texts[DimensionKind::position], testing::UnorderedElementsAre("40", "160", "50"));
+  EXPECT_THAT(texts[DimensionKind::diameter], ElementsAre("2\u00d7\u230024"));
+  EXPECT_THAT(texts[DimensionKind::radius], ElementsAre("4\u00d7R14"));
+  // Two directions of positions share a line, an origin and its extension line each.
+  EXPECT_EQ(std::count(uses.begin(), uses.end(), 0), 6);
+  EXPECT_EQ(std::count(uses.begin(), uses.end(), 1), std::ptrdiff_t(uses.size()) - 6);
+}
+
 TEST_F(DimensionsTest, PositionsWithoutRoomAreCounted) {
   Mesh mesh;
   add_box(mesh, {100, 60, 10});

@@ -2,6 +2,7 @@
 // Whole sheets by one call: sizes computed by hand, reported facts, and refused calls.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -35,6 +36,10 @@ Scene block(const glm::vec3& size = {40, 30, 20}) {
 class SheetOfBlock : public testing::Test {
  protected:
   [[nodiscard]] Sheet drawn(const SheetOptions& options) const { return draw_sheet(surfaces_, options); }
+  [[nodiscard]] Sheet drawn_with(SheetOptions options, Lettering lettering) const {
+    options.lettering = lettering;
+    return drawn(options);
+  }
 
   /// Bounds of a view, in millimetres of the page.
   [[nodiscard]] static DrawingBounds box_of(const DrawnView& view) {
@@ -123,6 +128,36 @@ TEST_F(SheetOfBlock, TheTitleBlockSaysWhatTheSheetIs) {
   EXPECT_FALSE(sheet.views[0].section);
   EXPECT_EQ(sheet.left_out, 0u);
   EXPECT_FALSE(sheet.is_empty);
+}
+
+/// All points of a page, sorted, with the texts in strokes.
+std::vector<std::pair<double, double>> points_of(Page page) {
+  std::vector<std::pair<double, double>> points;
+  for (PageLayer& layer : page.layers)
+    for (PageGroup& group : layer.groups) {
+      for (const PlacedText& text : group.texts) add_text(group, text.text, text.at, text.style);
+      for (const glm::dvec2& p : group.points) points.emplace_back(p.x, p.y);
+    }
+  std::sort(points.begin(), points.end());
+  return points;
+}
+
+TEST_F(SheetOfBlock, TextsAreWhereTheirStrokesWouldBe) {
+  SheetOptions options{.views = {V::front, V::top}, .sections = {{V::left, std::nullopt}}};
+  options.dimensions = Dimensioning::all;
+  options.page = named_paper("a3");
+  options.title_block = TitleBlock{.title = "A block", .author = "E. Example"};
+  const Sheet drawn = drawn_with(options, Lettering::strokes), written = drawn_with(options, Lettering::text);
+  EXPECT_EQ(travel_of(drawn.page).texts, 0u);
+  EXPECT_EQ(points_of(drawn.page), points_of(written.page));
+  EXPECT_LT(travel_of(written.page).paths, travel_of(drawn.page).paths);
+  std::multiset<std::string> texts;
+  for (const PageLayer& layer : written.page.layers)
+    for (const PageGroup& group : layer.groups)
+      for (const PlacedText& text : group.texts) texts.insert(text.text);
+  for (const char* const text : {"A block", "E. Example", "Legal owner", "A-A", "40", "30", "20"})
+    EXPECT_EQ(texts.count(text), 1u) << text;
+  EXPECT_EQ(texts.count("A"), 2u + 2u) << "the ends of the cutting line, and zones on both sides";
 }
 
 TEST(SheetOfSpheres, CurvedSurfacesAreMadeAnewAndStay) {
@@ -282,6 +317,7 @@ TEST_F(SheetOfBlock, WhatCannotBeMeantIsRefusedByTheNameOfItsField) {
        "would fit"},
       {{.views = {V::front}, .scale = 1e4}, "scale: at 10000:1 the page would be 400 x 200 m"},
       {{.views = {V::front}, .millimetres_per_unit = -1}, "millimetres_per_unit: "},
+      {{.views = {V::front}, .plot = true, .lettering = Lettering::text}, "lettering: plotters have no fonts"},
       {{.views = {V::front}, .hatch = 0.1}, "hatch: "},
       {{.views = {V::front}, .scale = 2000, .hatch = 0.2}, "hatch: 0.2 mm would be too many"},
       {{.views = {V::front}, .scale = 2000, .stipple = 0.2}, "stipple: 0.2 mm would be too many"},

@@ -345,6 +345,7 @@ DimensionOptions dimension_options(const SheetOptions& options, const Scene& sce
   numbers.numbers_per_unit = millimetres_per_unit(options, scene) / (in_inches ? inch : 1);
   numbers.decimals = {in_inches ? 3 : 2, in_inches && options.inch_fractions};
   numbers.level = options.dimensions;
+  numbers.lettering = options.lettering;
   return numbers;
 }
 
@@ -399,7 +400,7 @@ void add_frame(Page& page, const SheetOptions& options, const Scene& scene, std:
   block.unit = is_in_inches(options, scene) ? "in" : "mm";
   block.paper = paper_name({page.width, page.height});
   block.projection = has_named_views(options) ? options.projection : ProjectionMethod::none;
-  page.layers.push_back(draw_frame({page.width, page.height}, block));
+  page.layers.push_back(draw_frame({page.width, page.height}, block, options.lettering));
 }
 
 Sheet finish(std::vector<PlannedView> views, const Surfaces& surfaces, const SheetOptions& options,
@@ -427,7 +428,7 @@ Sheet finish(std::vector<PlannedView> views, const Surfaces& surfaces, const She
   sheet.page = page_of(surfaces, placed, pens, plan.size);
   sheet.is_empty = sheet.page.layers.empty();
   if (views[0].drawing.view.projection.orthographic) sheet.scale = plan.scale;
-  SectionMarks marks = section_marks_of(views, pens.centre);
+  SectionMarks marks = section_marks_of(views, pens.centre, options.lettering);
   if (!marks.layer.groups.empty()) sheet.page.layers.push_back(std::move(marks.layer));
   if (options.dimensions != Dimensioning::none) add_dimensions(sheet, views, marks.boxes, surfaces.scene(), options);
   if (options.title_block) add_frame(sheet.page, options, surfaces.scene(), sheet.scale);
@@ -457,6 +458,7 @@ void validate(const SheetOptions& o) {
   check_paper(o);
   if (o.dimensions != Dimensioning::none && o.views.empty()) refuse_option("dimensions", "need views");
   check_section_views(o);
+  if (o.plot && o.lettering == Lettering::text) refuse_option("lettering", "plotters have no fonts; use strokes");
 }
 
 Sheet draw_sheet(const Surfaces& surfaces, const SheetOptions& options, const Execution& execution) {

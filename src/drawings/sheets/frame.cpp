@@ -71,10 +71,11 @@ FittedText fitted(const std::string& text, const Field& field) {
 
 class BlockDrawing {
  public:
-  explicit BlockDrawing(const glm::dvec2& corner) : corner_(corner) {}
+  BlockDrawing(const glm::dvec2& corner, Lettering lettering) : corner_(corner), lettering_(lettering) {}
 
   void add(const Field& field, const std::string& text) {
-    add_text(labels_, field.label, corner_ + field.low + indent, {label_height, 0, TextAlign::left, TextLine::top});
+    add_text(labels_, field.label, corner_ + field.low + indent, {label_height, 0, TextAlign::left, TextLine::top},
+             lettering_);
     outline(field);
     if (text.empty()) return;
     const FittedText fit = fitted(text, field);
@@ -85,7 +86,7 @@ class BlockDrawing {
     const double top = field.low.y + indent + label_height, free = field.high.y - top;
     glm::dvec2 at = corner_ + glm::dvec2(field.low.x + 2 * indent, top + (free - taken) / 2 + fit.height);
     for (const std::string& line : fit.lines) {
-      add_text(group, line, at, {fit.height});
+      add_text(group, line, at, {fit.height}, lettering_);
       at.y += step;
     }
   }
@@ -142,6 +143,7 @@ class BlockDrawing {
   }
 
   const glm::dvec2 corner_;
+  const Lettering lettering_;
   PageGroup inner_{"title block: fields", {inner_width, {}}};
   PageGroup labels_{"title block: labels", text_pen(label_height)};
   PageGroup symbol_{"title block: projection", {inner_width, {}}};
@@ -245,11 +247,12 @@ struct FrameDrawing {
       for (std::size_t i = 0; i + 1 < ends.size(); ++i)
         add_text(names, axis == 0 ? std::to_string(i + 1) : zone_letter(int(i)),
                  point((ends[i] + ends[i + 1]) / 2, (edge + outer) / 2),
-                 {zone_text, 0, TextAlign::centre, TextLine::middle});
+                 {zone_text, 0, TextAlign::centre, TextLine::middle}, lettering);
     }
   }
 
   const glm::dvec2 page;
+  const Lettering lettering;
   const DrawingSpace space = drawing_space(page);
   const bool is_narrow = std::min(page.x, page.y) <= narrow_page;
 };
@@ -265,10 +268,10 @@ DrawingSpace drawing_space(const glm::dvec2& page) {
   return space;
 }
 
-PageLayer draw_frame(const glm::dvec2& page, const TitleBlock& block) {
+PageLayer draw_frame(const glm::dvec2& page, const TitleBlock& block, Lettering lettering) {
   PageLayer layer{"8 frame"};
-  FrameDrawing{page}.draw(layer);
-  BlockDrawing drawing(drawing_space(page).block);
+  FrameDrawing{page, lettering}.draw(layer);
+  BlockDrawing drawing(drawing_space(page).block, lettering);
   drawing.add({"Legal owner", {0, 0}, {69, 18}, 3.5, 2}, block.owner);
   drawing.add({"Scale", {0, 18}, {45, 27}, 2.5, 1}, block.scale);
   drawing.add({"Unit", {0, 27}, {22.5, 36}, 2.5, 1}, block.unit);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The paper of a sheet: the frame with its title block, and the layout of the views in columns and rows around the
-// front view. All marks are pen strokes, so plotters and DXF have them, too.
+// front view. All marks are pen strokes, so plotters and DXF have them, too; texts are strokes by default.
 //
 //               column -1   0     1             third-angle projection: the view from a side is on that side
 //    row -1                 top   iso           first-angle projection: on the opposite side
@@ -55,7 +55,8 @@ inline constexpr glm::dvec2 least_framed_page{210, 100};
 /// The layer "8 frame" for a page of that size: frame (0.7 mm), zones of 50 mm from the middle with letters and
 /// numbers, centring marks, trimming marks, title block and its text. Zones are only above and on the right if a side
 /// is at most 210 mm. \throws Error as drawing_space() does.
-[[nodiscard]] PageLayer draw_frame(const glm::dvec2& page, const TitleBlock& block);
+[[nodiscard]] PageLayer draw_frame(const glm::dvec2& page, const TitleBlock& block,
+                                   Lettering lettering = Lettering::strokes);
 
 /// The extent of a view around its anchor, in millimetres at scale 1:1, y down, and its cell. Anchors of a row have the
 /// same height, those of a column the same x.

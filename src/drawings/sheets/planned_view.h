@@ -72,6 +72,7 @@ struct ViewName {
 struct SectionMarkOptions {
   Pen thin{0.25, {}, {6, 1, 0.1, 1}};  ///< pen of the lines; their ends are twice as wide
   double text_height = 5;              ///< millimetres, as in TextStyle
+  Lettering lettering = Lettering::strokes;
 };
 
 /// Millimetres that a cutting line takes beyond its ends, and beside them on the side from which the section is viewed.
@@ -87,6 +88,7 @@ struct SectionMarks {
                                               const SectionMarkOptions& options = {});
 
 /// The cutting lines and names of all sections; empty if there are none.
-[[nodiscard]] SectionMarks section_marks_of(const std::vector<PlannedView>& views, const Pen& thin);
+[[nodiscard]] SectionMarks section_marks_of(const std::vector<PlannedView>& views, const Pen& thin,
+                                            Lettering lettering);
 
 }  // namespace frontmost::detail

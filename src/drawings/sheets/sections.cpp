@@ -261,7 +261,7 @@ SectionMarks draw_section_marks(std::span<const CuttingLine> lines, std::span<co
     add_arrowhead(heads, tip, line.looking, head_length);
     const double half = height / 2;
     const glm::dvec2 letter = tail - (letter_distance + half) * line.looking;
-    add_text(texts, line.letter, letter, {height, 0, TextAlign::centre, TextLine::middle});
+    add_text(texts, line.letter, letter, {height, 0, TextAlign::centre, TextLine::middle}, options.lettering);
     PageBox box{letter - half, letter + half};
     for (const glm::dvec2& corner : {thick_end[0], thick_end[1], tail}) {
       box.low = glm::min(box.low, corner);
@@ -277,16 +277,16 @@ SectionMarks draw_section_marks(std::span<const CuttingLine> lines, std::span<co
     draw_end(line, line.to, along);
   }
   for (const ViewName& name : names) {
-    add_text(texts, name.text, name.at, {height, 0, TextAlign::centre, TextLine::bottom});
+    add_text(texts, name.text, name.at, {height, 0, TextAlign::centre, TextLine::bottom}, options.lettering);
     const double half = text_width(name.text, height) / 2;
     marks.boxes.push_back({name.at - glm::dvec2(half, height), name.at + glm::dvec2(half, 0)});
   }
   for (PageGroup* const group : {&thin, &thick, &heads, &texts})
-    if (!group->paths.empty()) marks.layer.groups.push_back(std::move(*group));
+    if (!group->is_empty()) marks.layer.groups.push_back(std::move(*group));
   return marks;
 }
 
-SectionMarks section_marks_of(const std::vector<PlannedView>& views, const Pen& thin) {
+SectionMarks section_marks_of(const std::vector<PlannedView>& views, const Pen& thin, Lettering lettering) {
   const std::vector<std::size_t> hosts = hosts_of(views);
   std::vector<CuttingLine> lines;
   std::vector<ViewName> names;
@@ -304,7 +304,7 @@ SectionMarks section_marks_of(const std::vector<PlannedView>& views, const Pen& 
     if (is_empty(trace)) continue;
     lines.push_back({host.placed.on_page(trace.from), host.placed.on_page(trace.to), trace.looking, views[i].letter});
   }
-  return draw_section_marks(lines, names, {thin, name_height});
+  return draw_section_marks(lines, names, {thin, name_height, lettering});
 }
 
 }  // namespace frontmost::detail

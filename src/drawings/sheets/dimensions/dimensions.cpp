@@ -263,12 +263,23 @@ class DimensionPen {
   /// read from the right.
   void text(std::string_view text, const glm::dvec2& at, TextAlign align, bool is_upright = false) {
     const glm::dvec2 above = is_upright ? glm::dvec2(-text_distance, 0) : glm::dvec2(0, -text_distance);
-    add_text(texts_, text, at + above,
-             {options_.text_height, is_upright ? std::numbers::pi / 2 : 0, align, TextLine::bottom});
+    add_text(is_text() ? lines_ : texts_, text, at + above,
+             {options_.text_height, is_upright ? std::numbers::pi / 2 : 0, align, TextLine::bottom},
+             options_.lettering);
     if (!is_upright) return obstacles_.add(box_of(text, at, align));
     const PageBox level = box_of(text, {0, 0}, align);
     // A quarter turn maps (x, y) to (y, -x).
     obstacles_.add(PageBox{at + glm::dvec2(level.low.y, -level.high.x), at + glm::dvec2(level.high.y, -level.low.x)});
+  }
+
+  /// Begins a dimension for CAD programs; the lines that follow, and the last text, are its picture.
+  void begin_dimension() { first_path_ = lines_.paths.size(); }
+  void end_dimension(PageDimension dimension) {
+    if (!is_text()) return;
+    dimension.first_path = std::uint32_t(first_path_);
+    dimension.path_count = std::uint32_t(lines_.paths.size() - first_path_);
+    dimension.text = std::uint32_t(lines_.texts.size() - 1);
+    lines_.dimensions.push_back(dimension);
   }
 
   [[nodiscard]] double width_of(std::string_view text) const { return text_width(text, options_.text_height); }
@@ -285,14 +296,17 @@ class DimensionPen {
   [[nodiscard]] std::vector<PageGroup> take() {
     std::vector<PageGroup> groups;
     for (PageGroup* const group : {&lines_, &texts_})
-      if (!group->paths.empty()) groups.push_back(std::move(*group));
+      if (!group->is_empty()) groups.push_back(std::move(*group));
     return groups;
   }
 
  private:
+  [[nodiscard]] bool is_text() const { return options_.lettering == Lettering::text; }
+
   const DimensionOptions& options_;
   Obstacles& obstacles_;
   PageGroup lines_{"", Pen()}, texts_;
+  std::size_t first_path_ = 0;  ///< of the dimension that is being drawn
 };
 
 constexpr double least_turn = 190 * std::numbers::pi / 180;  // a round of less is an arc, and has a radius instead
@@ -380,12 +394,14 @@ struct Diameters {
   /// A place from which a leader may start, and its direction.
   struct Anchor {
     glm::dvec2 tip, out;
+    glm::dvec2 from;  ///< the opposite point of the circle, or the centre of the arc
   };
   struct Group {
     std::string text;
     std::vector<SeenCircle> circles;  ///< at different places
     std::vector<Anchor> anchors{};
     std::size_t count = 0;  ///< of circles or arcs
+    double factor = 1;      ///< as in PageDimension
   };
 
   /// Writes the diameters, or radii, of a view.
@@ -400,11 +416,14 @@ struct Diameters {
       }
       ++placed;
       ++all.count;
+      pen.begin_dimension();
       pen.line(leader->tip, leader->knee);
       pen.line(leader->knee, leader->end);
       pen.arrow(leader->tip, glm::normalize(leader->tip - leader->knee));
       const double side = leader->align == TextAlign::left ? 1 : -1;
       pen.text(text, leader->knee + glm::dvec2(side * text_distance, 0), leader->align);
+      const DimensionKind kind = group.circles.empty() ? DimensionKind::radius : DimensionKind::diameter;
+      pen.end_dimension({kind, leader->from, leader->tip, leader->knee, 0, group.factor});
     }
   }
 
@@ -421,7 +440,7 @@ struct Diameters {
 
   /// A leader from a circle to the shelf under its number.
   struct Leader {
-    glm::dvec2 tip, knee, end;
+    glm::dvec2 from, tip, knee, end;
     TextAlign align;
     double cost;
   };
@@ -458,7 +477,10 @@ struct Diameters {
       group->circles.push_back(circle);
       group->count += rings;
     }
-    for (Group& group : groups) group.anchors = anchors_of(group.circles);
+    for (Group& group : groups) {
+      group.anchors = anchors_of(group.circles);
+      group.factor = view.size_of(options.numbers_per_unit);
+    }
     // The largest circles come first, because they have the longest leaders around inner circles.
     std::stable_sort(groups.begin(), groups.end(), [](const Group& a, const Group& b) {
       return a.circles[0].round->radius > b.circles[0].round->radius;
@@ -507,13 +529,15 @@ struct Diameters {
       auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.text == text; });
       if (group == groups.end()) group = groups.insert(group, {text, {}});
       ++group->count;
+      group->factor = view.size_of(options.numbers_per_unit);
       group->circles.push_back(seen.circle);
       if (group->count > most_tried) continue;
       for (const glm::dvec2& out : seen.outs)
         for (const double turn : {0.0, 0.5, -0.5}) {
           const glm::dvec2 across(-out.y, out.x);
           group->anchors.push_back(
-              {seen.circle.centre + seen.circle.radius * out, out * std::cos(turn) + across * std::sin(turn)});
+              {seen.circle.centre + seen.circle.radius * out, out * std::cos(turn) + across * std::sin(turn),
+               seen.circle.centre - seen.circle.radius * out});
         }
     }
     return groups;
@@ -537,9 +561,11 @@ struct Diameters {
       Group& group = groups[number];
       ++group.count;
       if (group.count > most_tried) continue;
+      group.factor = view.size_of(options.numbers_per_unit);
+      const glm::dvec2 centre = view.on_page(arc.centre);
       // From outside of the curve, or across its centre.
-      group.anchors.push_back({seen.middle, seen.out});
-      group.anchors.push_back({seen.middle, -seen.out});
+      group.anchors.push_back({seen.middle, seen.out, centre});
+      group.anchors.push_back({seen.middle, -seen.out, centre});
     }
     return groups;
   }
@@ -552,7 +578,8 @@ struct Diameters {
       for (const int angle : degrees) {
         const double radians = angle * std::numbers::pi / 180;
         const glm::dvec2 out(std::cos(radians), -std::sin(radians));
-        anchors.push_back({circles[i].centre + circles[i].radius * out, out});
+        const glm::dvec2 tip = circles[i].radius * out;
+        anchors.push_back({circles[i].centre + tip, out, circles[i].centre - tip});
       }
     return anchors;
   }
@@ -560,7 +587,7 @@ struct Diameters {
   [[nodiscard]] std::optional<Leader> best_leader(const Group& group, std::string_view text) const {
     std::optional<Leader> best;
     const double shelf = pen.width_of(text) + 2 * text_distance;
-    for (const auto& [tip, out] : group.anchors) {
+    for (const auto& [tip, out, from] : group.anchors) {
       const double side = out.x > 0 ? 1 : -1;
       int crossed = obstacles.crossings({tip + 0.1 * out, tip + nearest_knee * out});
       for (double way = nearest_knee; way <= farthest_knee; way += knee_step) {
@@ -570,7 +597,7 @@ struct Diameters {
         const TextAlign align = side > 0 ? TextAlign::left : TextAlign::right;
         PageBox box = pen.box_of(text, knee + glm::dvec2(side * text_distance, 0), align);
         box.high.y += 2 * text_distance;  // the shelf, and room below it
-        if (obstacles.is_free(box)) best = Leader{tip, knee, end, align, cost};
+        if (obstacles.is_free(box)) best = Leader{from, tip, knee, end, align, cost};
         crossed += obstacles.crossings({knee, knee + knee_step * out});
       }
     }
@@ -587,10 +614,13 @@ struct Diameters {
 
 constexpr double same_direction = 0.9999;  // cosine
 
+/// The measured direction of an axis of the page, as in PageDimension.
+constexpr double angle_of(int axis) { return axis == 0 ? 0 : std::numbers::pi / 2; }
+
 /// Draws an overall size along an axis: level for axis 0; for axis 1 upright, with x and y swapped, to be read from the
 /// right. `taken`: millimetres on the left of the view and below it that other marks occupy.
 void draw_overall_size(DimensionPen& pen, const MeasuredView& view, const glm::dvec2& taken, int axis, const Extent& e,
-                       const std::string& text) {
+                       const std::string& text, double numbers_per_unit) {
   const bool is_level = axis == 0;
   const double line =
       is_level ? view.box.high.y + (first_distance + taken.y) : view.box.low.x - (first_distance + taken.x);
@@ -598,6 +628,7 @@ void draw_overall_size(DimensionPen& pen, const MeasuredView& view, const glm::d
   const auto at = [&](double along, double across) {
     return is_level ? glm::dvec2(along, across) : glm::dvec2(across, along);
   };
+  pen.begin_dimension();
   for (const double end : {e.low, e.high})
     pen.line(at(end, view.foot_of_end(axis, end) + away * extension_gap), at(end, line + away * extension_overshoot));
   const double length = e.high - e.low, arrow = pen.arrow_length(), width = pen.width_of(text);
@@ -615,6 +646,9 @@ void draw_overall_size(DimensionPen& pen, const MeasuredView& view, const glm::d
   const double middle =
       is_text_inside ? (e.low + e.high) / 2 : first + forwards * (text_tail - text_distance - width / 2);
   pen.text(text, at(middle, line), TextAlign::centre, !is_level);
+  pen.end_dimension({DimensionKind::linear, at(e.low, view.foot_of_end(axis, e.low)),
+                     at(e.high, view.foot_of_end(axis, e.high)), at(e.high, line), angle_of(axis),
+                     view.size_of(numbers_per_unit)});
 }
 
 constexpr double positions_room = first_distance + extension_overshoot + 14;  // numbers of five digits
@@ -663,6 +697,7 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
   double farthest = 0;
   for (const Position& p : chosen) {
     const double along = datum + forwards * p.distance, number = datum + forwards * p.place;
+    pen.begin_dimension();
     pen.line(at(along, p.foot), at(along, row + away * extension_overshoot));
     if (has_jogs) pen.line(at(along, row + away * extension_overshoot), at(number, end));
     // Too near to the origin, the arrowhead points back to it.
@@ -675,6 +710,9 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
     const glm::dvec2 base = at(number + options.text_height / 2 + text_distance, end + away);
     pen.text(dimension_text(view.size_of(p.distance) * options.numbers_per_unit, options.decimals), base,
              TextAlign::right, is_level);
+    pen.end_dimension({DimensionKind::position, at(datum, row), at(along, p.foot - away * extension_gap),
+                       at(along, row + away * extension_overshoot), angle_of(axis),
+                       view.size_of(options.numbers_per_unit)});
     ++all.count;
   }
   pen.line(at(datum, view.foot_of_end(axis, datum) + away * extension_gap),
@@ -839,7 +877,7 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
         text = flats_sign + text;
       }
       const glm::dvec2 within = views[i].taken + planned.rooms[i];
-      draw_overall_size(pen, measured[i], within, axis, extent, text);
+      draw_overall_size(pen, measured[i], within, axis, extent, text, options.numbers_per_unit);
       ++all.count;
     }
   }

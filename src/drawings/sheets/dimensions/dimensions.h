@@ -35,6 +35,7 @@ struct DimensionOptions {
   double numbers_per_unit = 1;  ///< numbers per unit of length of the scene; above 0
   NumberStyle decimals{};
   double text_height = 3.5;  ///< millimetres, as in TextStyle
+  Lettering lettering = Lettering::strokes;
 };
 
 /// The overall sizes of a view.
@@ -60,11 +61,12 @@ struct OverallSizes {
 [[nodiscard]] std::string dimension_text(double number, const NumberStyle& style);
 
 struct Dimensions {
-  PageLayer layer{"7 dimensions"};  ///< one group of lines and one of texts, both without names
-  std::size_t count = 0;            ///< number of dimensions on the page
-  std::size_t left_out = 0;         ///< diameters, radii and positions without room
-  std::size_t undrawn = 0;          ///< diameters of cylinders that are seen along their axes, but hidden
-  std::size_t prisms = 0;           ///< diameters of cylinders of fewer than 18 sides, which count as polygons
+  /// One group of lines and one of strokes of texts, both without names; texts and dimensions are in the first group.
+  PageLayer layer{"7 dimensions"};
+  std::size_t count = 0;     ///< number of dimensions on the page
+  std::size_t left_out = 0;  ///< diameters, radii and positions without room
+  std::size_t undrawn = 0;   ///< diameters of cylinders that are seen along their axes, but hidden
+  std::size_t prisms = 0;    ///< diameters of cylinders of fewer than 18 sides, which count as polygons
 };
 
 /// Places overall sizes by overall_sizes_of(), and the diameters of circles and cylinders seen along their axes, each
