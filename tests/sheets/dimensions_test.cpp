@@ -369,7 +369,7 @@ TEST_F(DimensionsTest, OfTextKnowWhatTheyMeasure) {
   DimensionOptions of_text = options;
   of_text.lettering = Lettering::text;
   const Dimensions all = dimensioned(of_text), drawn = dimensioned(options);
-  ASSERT_EQ(all.count, 3u + 1u + 3u + 1u) << "sizes, diameters, positions, radii";
+  ASSERT_EQ(all.count, 3u + 1u + 4u + 1u) << "sizes, diameters, positions, radii";
   EXPECT_EQ(drawn.count, all.count);
   ASSERT_EQ(all.layer.groups.size(), 1u);
   const PageGroup& group = all.layer.groups[0];
@@ -390,12 +390,12 @@ TEST_F(DimensionsTest, OfTextKnowWhatTheyMeasure) {
     for (std::size_t i = 0; i < dimension.path_count; ++i) ++uses.at(dimension.first_path + i);
   }
   EXPECT_THAT(texts[DimensionKind::linear], testing::UnorderedElementsAre("200", "120", "36"));
-  EXPECT_THAT(texts[DimensionKind::position], testing::UnorderedElementsAre("40", "160", "50"));
+  EXPECT_THAT(texts[DimensionKind::position], testing::UnorderedElementsAre("40", "160", "50", "16"));
   EXPECT_THAT(texts[DimensionKind::diameter], ElementsAre("2\u00d7\u230024"));
   EXPECT_THAT(texts[DimensionKind::radius], ElementsAre("4\u00d7R14"));
-  // Two directions of positions share a line, an origin and its extension line each.
-  EXPECT_EQ(std::count(uses.begin(), uses.end(), 0), 6);
-  EXPECT_EQ(std::count(uses.begin(), uses.end(), 1), std::ptrdiff_t(uses.size()) - 6);
+  // Three rows of positions share a line, an origin and its extension line each.
+  EXPECT_EQ(std::count(uses.begin(), uses.end(), 0), 9);
+  EXPECT_EQ(std::count(uses.begin(), uses.end(), 1), std::ptrdiff_t(uses.size()) - 9);
 }
 
 TEST_F(DimensionsTest, PositionsWithoutRoomAreCounted) {
