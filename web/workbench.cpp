@@ -170,7 +170,7 @@ PlainJson Workbench::edges(const PlainJson&) {
   (void)seen();
   View one = view_;
   one.samples = 1;
-  const Drawing drawing = draw_lines(model().surfaces, one);
+  const Drawing drawing = draw_lines(model().surfaces, one, {.ripples = false});
   segments_.clear();
   for (const DrawnPart& part : drawing.parts)
     for (const double value : {part.from.x, part.from.y, part.to.x, part.to.y, part.hidden_by ? 1.0 : 0.0})

@@ -105,12 +105,12 @@ struct Drawing {
 [[nodiscard]] Drawing draw_lines(const Surfaces& surfaces, const View& view, const LineOptions& options = {},
                                  const Execution& execution = {});
 
-/// Draws lines of the same surfaces in one view after another. What does not depend on the view is kept: shared
-/// vertices, the triangles at each of them, intersections. Each further view of a machine takes two thirds of the time.
-/// Memory: 100 bytes a triangle. Not for several threads at once.
+/// Draws lines of the same surfaces in one view after another. The drawer keeps shared vertices, adjacency and
+/// intersections, which are the same in every view. Memory: 40 bytes a triangle and 80 a segment of an intersection, and
+/// the room of the first drawing, up to 28 MiB. Not for several threads at once.
 class LineDrawer {
  public:
-  /// Borrows the surfaces, which must not change.
+  /// Borrows the surfaces, which must outlive the drawer and not change.
   explicit LineDrawer(const Surfaces& surfaces);
   ~LineDrawer();
   LineDrawer(LineDrawer&&) noexcept;

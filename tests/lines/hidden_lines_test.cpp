@@ -106,7 +106,6 @@ TEST(Lines, ThreadsChangeNothing) {
   expect_same(one, three);
 }
 
-/// Enough triangles for several parts of every step; some cover many cells and lie in every part.
 TEST(Lines, OfOneViewAfterAnotherAreThoseOfEachAlone) {
   for (const Kind kind : {Kind::sheets, Kind::coplanar, Kind::soup}) {
     Mesh mesh = random_mesh(kind, kind == Kind::sheets ? 30 : 150, 4);
@@ -120,16 +119,22 @@ TEST(Lines, OfOneViewAfterAnotherAreThoseOfEachAlone) {
     const Surfaces surfaces(scene);
     LineDrawer drawer(surfaces);
     Random random(17);
-    for (int i = 0; i < 6; ++i) {
+    // A first view that is cancelled leaves a drawer that can be used.
+    EXPECT_THROW((void)drawer.draw(random_view(random, 160, 120), {}, CountingWatch(3).execution()), Error);
+    for (int i = 0; i < 8; ++i) {
       const View view = random_view(random, 160, 120);
-      const LineOptions options{.counts_hidden = i % 2 == 0, .intersections = i % 3 != 0, .ripples = i > 2};
-      expect_same(draw_lines(surfaces, view, options), drawer.draw(view, options));
+      LineOptions options{
+          .counts_hidden = i % 2 == 0, .silhouettes = i != 4, .intersections = i % 3 != 0, .ripples = i > 2};
+      if (i == 5) options.crease_angle = 0.5;
+      options.boundaries = i != 6;
+      expect_same(draw_lines(surfaces, view, options), drawer.draw(view, options, {.threads = 1 + i % 3}));
     }
     EXPECT_THROW((void)drawer.draw(View(), {}), Error);
     EXPECT_THROW((void)drawer.draw(random_view(random, 16, 16), {.crease_angle = -1}), Error);
   }
 }
 
+/// Enough triangles for several parts of every step; some cover many cells and lie in every part.
 TEST(Lines, PartsOfManyTrianglesAreOneGrid) {
   Random random(7);
   Mesh mesh;

@@ -69,11 +69,14 @@ TEST(Ripples, OutlinesStay) {
   for (const Mesh& mesh : {rough_plate(), rough_waves(), tube(1, 0.01), tube(1, 0)}) {
     const Scene scene = scene_of(mesh);
     const Surfaces surfaces(scene);
-    for (int i = 0; i < 12; ++i) {
+    for (int i = 0; i < 16; ++i) {
       const glm::dvec3 forward = glm::dvec3(random.point(1)) * glm::dvec3(1, 1, i % 2 == 0 ? 1 : 0.05);
-      const View view = seen_along(surfaces, forward, i % 3 == 0);
+      View view = seen_along(surfaces, forward, i % 3 == 0);
+      // From above the middle, part of the surface lies behind the eye.
+      const glm::dvec3 eye(0.5, 0.5, 0.15);
+      if (i >= 12) view = make_view(1, 400, 400).looking(eye, eye + forward, {0, 0, 1}).between(0.01, 10);
       const double all = silhouettes_of(drawn(surfaces, view, true), true);
-      EXPECT_GE(silhouettes_of(drawn(surfaces, view, false), true), 0.99 * all) << i;
+      EXPECT_GE(silhouettes_of(drawn(surfaces, view, false), true), 0.99 * all - 0.5) << i;
     }
   }
 }

@@ -178,19 +178,19 @@ std::size_t arrows_of(const Dimensions& all) {
 }
 
 TEST(DimensionText, HasNoTrailingZeros) {
-  EXPECT_EQ(dimension_text(50, 2), "50");
-  EXPECT_EQ(dimension_text(49.99997, 2), "50");
-  EXPECT_EQ(dimension_text(12.7, 2), "12.7");
-  EXPECT_EQ(dimension_text(33.3333333, 2), "33.33");
-  EXPECT_EQ(dimension_text(100.05, 2), "100.05");
-  EXPECT_EQ(dimension_text(0.266, 2), "0.266");
-  EXPECT_EQ(dimension_text(0.0123456, 2), "0.0123");
-  EXPECT_EQ(dimension_text(0, 2), "0");
+  EXPECT_EQ(dimension_text(50, {2}), "50");
+  EXPECT_EQ(dimension_text(49.99997, {2}), "50");
+  EXPECT_EQ(dimension_text(12.7, {2}), "12.7");
+  EXPECT_EQ(dimension_text(33.3333333, {2}), "33.33");
+  EXPECT_EQ(dimension_text(100.05, {2}), "100.05");
+  EXPECT_EQ(dimension_text(0.266, {2}), "0.266");
+  EXPECT_EQ(dimension_text(0.0123456, {2}), "0.0123");
+  EXPECT_EQ(dimension_text(0, {2}), "0");
   // Two equal sides must not become 1.87 and 1.88.
-  EXPECT_EQ(dimension_text(1.8749999, 2), "1.875");
-  EXPECT_EQ(dimension_text(1.8750001, 2), "1.875");
-  EXPECT_EQ(dimension_text(1234.5678, 0), "1235");
-  EXPECT_EQ(dimension_text(0.9996, 2), "1");
+  EXPECT_EQ(dimension_text(1.8749999, {2}), "1.875");
+  EXPECT_EQ(dimension_text(1.8750001, {2}), "1.875");
+  EXPECT_EQ(dimension_text(1234.5678, {0}), "1235");
+  EXPECT_EQ(dimension_text(0.9996, {2}), "1");
 }
 
 TEST_F(DimensionsTest, ABoxHasThree) {
@@ -254,7 +254,7 @@ TEST(DimensionText, IsAFractionOfAnInchWhereThatIsExactEnough) {
   // Below 1/64, nothing is taken for 0.
   EXPECT_EQ(dimension_text(0.0004, style), "0.0004");
   EXPECT_EQ(dimension_text(0, style), "0");
-  EXPECT_EQ(dimension_text(1e15, style), dimension_text(1e15, 3));
+  EXPECT_EQ(dimension_text(1e15, style), dimension_text(1e15, {3}));
 }
 
 TEST_F(DimensionsTest, NumbersAreInTheUnitOfTheDrawing) {
@@ -264,7 +264,7 @@ TEST_F(DimensionsTest, NumbersAreInTheUnitOfTheDrawing) {
   draw({NamedView::front});
   PageGroup expected;
   for (const char* const number : {"1", "2"}) add_text(expected, number, {0, 0});
-  const Dimensions all = dimensioned({.numbers_per_unit = 1 / 25.4, .decimals = 3});
+  const Dimensions all = dimensioned({.numbers_per_unit = 1 / 25.4, .number_style = {3}});
   EXPECT_EQ(all.layer.groups.at(1).points.size(), expected.points.size());
 }
 
@@ -845,8 +845,8 @@ TEST_F(DimensionsTest, BadOptionsAreRefused) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double unit : {0.0, -1.0, infinity, std::nan("")})
     EXPECT_THROW(static_cast<void>(dimensioned({.numbers_per_unit = unit})), Error);
-  EXPECT_THROW(static_cast<void>(dimensioned({.decimals = -1})), Error);
-  EXPECT_THROW(static_cast<void>(dimensioned({.decimals = 7})), Error);
+  EXPECT_THROW(static_cast<void>(dimensioned({.number_style = {-1}})), Error);
+  EXPECT_THROW(static_cast<void>(dimensioned({.number_style = {7}})), Error);
   EXPECT_THROW(static_cast<void>(dimensioned({.text_height = 0})), Error);
 }
 

@@ -343,7 +343,7 @@ DimensionOptions dimension_options(const SheetOptions& options, const Scene& sce
   const bool in_inches = is_in_inches(options, scene);
   DimensionOptions numbers;
   numbers.numbers_per_unit = millimetres_per_unit(options, scene) / (in_inches ? inch : 1);
-  numbers.decimals = {in_inches ? 3 : 2, in_inches && options.inch_fractions};
+  numbers.number_style = {in_inches ? 3 : 2, in_inches && options.inch_fractions};
   numbers.level = options.dimensions;
   numbers.lettering = options.lettering;
   return numbers;

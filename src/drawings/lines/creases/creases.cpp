@@ -476,23 +476,23 @@ class CreaseGraph {
       if (drawn_at(v) == 1) tips.push_back(v);
     }
     const double least = kLong * glm::distance(low, high);
-    // Without the lines that met it, a line may end in the air, or go on.
-    for (std::size_t removed = tips.size(); removed > 0;) {
-      removed = 0;
-      for (std::size_t i = 0; i < tips.size(); ++i) {
-        if (i % kEdgesPerPart == 0) check_cancelled(execution_);
-        if (drawn_at(tips[i]) != 1) continue;
-        const std::vector<std::uint32_t> line = line_from(tips[i]);
-        double length = 0;
-        for (const std::uint32_t edge : line)
-          length += glm::distance(mesh_.positions[edges_[edge].from], mesh_.positions[edges_[edge].to]);
-        if (line.empty() || line.size() >= kFewestAlone || length > least) continue;
-        const std::uint32_t end = end_of(line, tips[i]);
-        if (line.size() >= kFewestEdges && drawn_at(end) != 1) continue;
-        for (const std::uint32_t edge : line) folds_[edge].grade = FoldGrade::smooth;
-        ++removed;
-        if (drawn_at(end) == 1) tips.push_back(end);
-      }
+    for (std::size_t i = 0; i < tips.size(); ++i) {
+      if (i % kEdgesPerPart == 0) check_cancelled(execution_);
+      if (drawn_at(tips[i]) != 1) continue;
+      const std::vector<std::uint32_t> line = line_from(tips[i]);
+      double length = 0;
+      for (const std::uint32_t edge : line)
+        length += glm::distance(mesh_.positions[edges_[edge].from], mesh_.positions[edges_[edge].to]);
+      if (line.empty() || line.size() >= kFewestAlone || length > least) continue;
+      const std::uint32_t end = end_of(line, tips[i]);
+      if (line.size() >= kFewestEdges && drawn_at(end) != 1) continue;
+      for (const std::uint32_t edge : line) folds_[edge].grade = FoldGrade::smooth;
+      // A line that met the removed one may end in the air now, or go on to a tip.
+      if (drawn_at(end) == 1) tips.push_back(end);
+      if (drawn_at(end) != 2) continue;
+      for (const std::uint32_t edge : edges_at_[end])
+        if (is_drawn(edge))
+          if (const std::uint32_t tip = end_of(line_along(edge, end), end); drawn_at(tip) == 1) tips.push_back(tip);
     }
   }
 
@@ -515,23 +515,27 @@ class CreaseGraph {
     return std::size_t(std::count_if(here.begin(), here.end(), [&](std::uint32_t e) { return is_drawn(e); }));
   }
 
-  /// The edges of the line that begins at `tip`, a vertex with one drawn edge. The line ends where other edges meet it,
-  /// where it bends sharply, or after kFewestAlone edges.
+  /// The edges of the line that begins at `tip`, a vertex with one drawn edge.
   [[nodiscard]] std::vector<std::uint32_t> line_from(std::uint32_t tip) const {
+    for (const std::uint32_t edge : edges_at_[tip])
+      if (is_drawn(edge)) return line_along(edge, tip);
+    return {};
+  }
+  /// The edges of the line that goes from `vertex` along `edge`. The line ends where other edges meet it, where it
+  /// bends sharply, or after kFewestAlone edges.
+  [[nodiscard]] std::vector<std::uint32_t> line_along(std::uint32_t edge, std::uint32_t vertex) const {
     std::vector<std::uint32_t> line;
-    for (std::uint32_t vertex = tip; line.size() < kFewestAlone;) {
-      std::uint32_t next = no_index;
-      for (const std::uint32_t edge : edges_at_[vertex])
-        if (is_drawn(edge) && (line.empty() || edge != line.back())) next = edge;
-      if (next == no_index || !needs_judgement(edges_[next], mesh_)) break;
-      if (!line.empty() && bend(line.back(), next, vertex) < kBend) break;
-      line.push_back(next);
-      vertex = other_end(next, vertex);
-      if (drawn_at(vertex) != 2) break;
+    while (edge != no_index && needs_judgement(edges_[edge], mesh_)) {
+      if (!line.empty() && bend(line.back(), edge, vertex) < kBend) break;
+      line.push_back(edge);
+      vertex = other_end(edge, vertex);
+      if (line.size() == kFewestAlone || drawn_at(vertex) != 2) break;
+      edge = no_index;
+      for (const std::uint32_t next : edges_at_[vertex])
+        if (is_drawn(next) && next != line.back()) edge = next;
     }
     return line;
   }
-
   [[nodiscard]] std::uint32_t end_of(const std::vector<std::uint32_t>& line, std::uint32_t vertex) const {
     for (const std::uint32_t edge : line) vertex = other_end(edge, vertex);
     return vertex;

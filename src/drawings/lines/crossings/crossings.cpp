@@ -388,6 +388,15 @@ auto order(const Crossing& c) {
   return std::make_tuple(a.x, a.y, a.z, b.x, b.y, b.z, c.left, c.right);
 }
 
+bool is_before(const Crossing& a, const Crossing& b) { return order(a) < order(b); }
+
+void remove_repeated(std::vector<Crossing>& sorted) {
+  const auto is_same_line = [](const Crossing& a, const Crossing& b) {
+    return a.from.place == b.from.place && a.to.place == b.to.place;
+  };
+  sorted.erase(std::unique(sorted.begin(), sorted.end(), is_same_line), sorted.end());
+}
+
 /// Sorts segments by their ends, of which the lesser one becomes the first, and removes repeated ones, and those whose
 /// ends were rounded to one place.
 void arrange(std::vector<Crossing>& all, const Execution& execution) {
@@ -396,12 +405,8 @@ void arrange(std::vector<Crossing>& all, const Execution& execution) {
     if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(c.from, c.to);
   }
   std::erase_if(all, [](const Crossing& c) { return c.from.place == c.to.place; });
-  sort_in_parts(
-      all, [](const Crossing& a, const Crossing& b) { return order(a) < order(b); }, execution);
-  const auto is_same_line = [](const Crossing& a, const Crossing& b) {
-    return a.from.place == b.from.place && a.to.place == b.to.place;
-  };
-  all.erase(std::unique(all.begin(), all.end(), is_same_line), all.end());
+  sort_in_parts(all, is_before, execution);
+  remove_repeated(all);
 }
 
 }  // namespace
@@ -449,9 +454,14 @@ CrossedPairs find_crossed_pairs(const WeldedMesh& mesh, const Features& features
 
 std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features, const CrossedPairs& pairs,
                                      const Execution& execution) {
-  std::vector<Crossing> all = pairs.crossings;
-  add_contacts(mesh, features, pairs.contacts, all);
-  if (all.size() > pairs.crossings.size()) arrange(all, execution);
+  std::vector<Crossing> added;
+  add_contacts(mesh, features, pairs.contacts, added);
+  arrange(added, execution);
+  std::vector<Crossing> all;
+  all.reserve(pairs.crossings.size() + added.size());
+  std::merge(pairs.crossings.begin(), pairs.crossings.end(), added.begin(), added.end(), std::back_inserter(all),
+             is_before);
+  remove_repeated(all);
   return all;
 }
 

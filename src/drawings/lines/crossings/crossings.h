@@ -32,7 +32,7 @@ struct EdgeContact {
   friend auto operator<=>(const EdgeContact&, const EdgeContact&) = default;
 };
 
-/// What does not depend on the view.
+/// Intersections and contacts, which are the same in every view.
 struct CrossedPairs {
   std::vector<Crossing> crossings;  ///< sorted by the segments' ends, each segment once
   std::vector<EdgeContact> contacts;
@@ -45,7 +45,7 @@ struct CrossedPairs {
 [[nodiscard]] CrossedPairs find_crossed_pairs(const WeldedMesh& mesh, const Features& features,
                                               const Execution& execution);
 
-/// The segments of the pairs and those of add_contacts(), sorted by their ends, each once. O(segments log segments).
+/// The segments of the pairs and those of add_contacts(), sorted by their ends, each once. O(segments + contacts log contacts).
 [[nodiscard]] std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features,
                                                    const CrossedPairs& pairs, const Execution& execution);
 

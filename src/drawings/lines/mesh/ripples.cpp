@@ -36,6 +36,8 @@ class RippleFinder {
     const auto normal = glm::vec3(unit_of(glm::dvec3(left + right)));
     if (!(glm::dot(left, right) > kSharp)) return false;
     look_along(edge);
+    if (has_other_sides(edge) || !(is_ahead(mesh_.triangles[edge.left]) && is_ahead(mesh_.triangles[edge.right])))
+      return false;
     std::array<glm::dvec2, kPlaces.size()> open = places_beside(edge);
     std::size_t open_count = open.size();
     // Triangles ring by ring around the edge, over vertices that are listed once.
@@ -49,6 +51,7 @@ class RippleFinder {
           const std::uint32_t triangle = corner.triangle();
           if (triangle == edge.left || triangle == edge.right) continue;
           if (!(glm::dot(normal_at(triangle), normal) > kGoesOnAlike)) continue;
+          if (!is_ahead(mesh_.triangles[triangle])) continue;
           const Flat flat = on_picture(mesh_.triangles[triangle]);
           const auto still = std::remove_if(open.begin(), open.begin() + std::ptrdiff_t(open_count),
                                             [&](const glm::dvec2& place) { return covers(flat, place); });
@@ -66,6 +69,14 @@ class RippleFinder {
 
   [[nodiscard]] const glm::vec3& normal_at(std::uint32_t triangle) const { return seen_.triangles[triangle].normal; }
 
+  /// Whether more than two triangles have the edge, as where two surfaces share it.
+  [[nodiscard]] bool has_other_sides(const FeatureEdge& edge) const {
+    const std::span<const Corner> corners = table_[edge.from];
+    return std::count_if(corners.begin(), corners.end(), [&](const Corner& corner) {
+             return corner.next(mesh_) == edge.to || corner.last(mesh_) == edge.to;
+           }) > 2;
+  }
+
   /// Chooses a picture plane on which the edge runs along x.
   void look_along(const FeatureEdge& edge) {
     const glm::dvec3 from = mesh_.positions[edge.from], to = mesh_.positions[edge.to];
@@ -75,6 +86,14 @@ class RippleFinder {
     x_ = unit_of((to - from) - ahead_ * glm::dot(to - from, ahead_));
     y_ = glm::cross(ahead_, x_);
   }
+  /// Whether all corners lie before the eye, so that they have places on the picture.
+  [[nodiscard]] bool is_ahead(const glm::uvec3& triangle) const {
+    const auto is_vertex_ahead = [&](std::uint32_t vertex) {
+      return glm::dot(mesh_.positions[vertex] - origin_, ahead_) > 0;
+    };
+    return seen_.sight.is_parallel() ||
+           (is_vertex_ahead(triangle.x) && is_vertex_ahead(triangle.y) && is_vertex_ahead(triangle.z));
+  }
   [[nodiscard]] glm::dvec2 on_picture(std::uint32_t vertex) const {
     const glm::dvec3 from_origin = mesh_.positions[vertex] - origin_;
     const glm::dvec2 place(glm::dot(from_origin, x_), glm::dot(from_origin, y_));
@@ -82,7 +101,7 @@ class RippleFinder {
   }
   /// Places close to the edge, on the side on which its triangles do not lie.
   [[nodiscard]] std::array<glm::dvec2, kPlaces.size()> places_beside(const FeatureEdge& edge) const {
-    double inner = 0;  // of the triangle that is seen better
+    double inner = 0;  // y of the opposite corner that lies farther from the edge
     for (const std::uint32_t triangle : {edge.left, edge.right}) {
       const double y = on_picture(third_of(mesh_.triangles[triangle], edge.from, edge.to)).y;
       if (std::abs(y) > std::abs(inner)) inner = y;

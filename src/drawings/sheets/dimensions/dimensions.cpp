@@ -376,7 +376,7 @@ struct Diameters {
   [[nodiscard]] bool has_all() const { return options.level >= Dimensioning::all; }
 
   [[nodiscard]] std::string text_of(double size) const {
-    return dimension_text(size * options.numbers_per_unit, options.decimals);
+    return dimension_text(size * options.numbers_per_unit, options.number_style);
   }
 
   /// Marks flats as dimensioned. \returns false if flats of this width and axis were marked before.
@@ -535,9 +535,9 @@ struct Diameters {
       for (const glm::dvec2& out : seen.outs)
         for (const double turn : {0.0, 0.5, -0.5}) {
           const glm::dvec2 across(-out.y, out.x);
-          group->anchors.push_back(
-              {seen.circle.centre + seen.circle.radius * out, out * std::cos(turn) + across * std::sin(turn),
-               seen.circle.centre - seen.circle.radius * out});
+          group->anchors.push_back({seen.circle.centre + seen.circle.radius * out,
+                                    out * std::cos(turn) + across * std::sin(turn),
+                                    seen.circle.centre - seen.circle.radius * out});
         }
     }
     return groups;
@@ -708,7 +708,7 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
     farthest = std::max(farthest, p.distance + (is_near ? 2 * arrow : 0));
     // The number stands in line with its extension line.
     const glm::dvec2 base = at(number + options.text_height / 2 + text_distance, end + away);
-    pen.text(dimension_text(view.size_of(p.distance) * options.numbers_per_unit, options.decimals), base,
+    pen.text(dimension_text(view.size_of(p.distance) * options.numbers_per_unit, options.number_style), base,
              TextAlign::right, is_level);
     pen.end_dimension({DimensionKind::position, at(datum, row), at(along, p.foot - away * extension_gap),
                        at(along, row + away * extension_overshoot), angle_of(axis),
@@ -725,7 +725,7 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
 double position_room(const Extent& extent, const DimensionOptions& options) {
   // No number of the row has more digits before the point than the overall size.
   const std::string longest = std::to_string(std::int64_t(std::min(9e15, extent.size * options.numbers_per_unit))) +
-                              "." + std::string(std::size_t(options.decimals.most), '0');
+                              "." + std::string(std::size_t(options.number_style.most_decimals), '0');
   const double long_room = text_width(longest, options.text_height) + options.text_height + 5 * text_distance;
   return std::max(positions_room, long_room) + (options.level >= Dimensioning::all ? jog_room : 0);
 }
@@ -779,7 +779,7 @@ PlannedRows plan_rows(std::span<const DimensionedView> views, const std::vector<
 void validate(const DimensionOptions& options) {
   if (!(options.numbers_per_unit > 0 && std::isfinite(options.numbers_per_unit)))
     throw Error(ErrorCode::bad_argument, "numbers_per_unit", "must be above 0 and finite");
-  if (options.decimals.most < 0 || options.decimals.most > 6)
+  if (options.number_style.most_decimals < 0 || options.number_style.most_decimals > 6)
     throw Error(ErrorCode::bad_argument, "decimals", "must be from 0 to 6");
   if (!(options.text_height >= 0.5 && options.text_height <= 100))
     throw Error(ErrorCode::bad_argument, "text_height", "must be from 0.5 to 100 millimetres");
@@ -802,8 +802,8 @@ std::string fraction_text(double size) {
 
 std::string dimension_text(double number, const NumberStyle& style) {
   const double size = std::abs(number);
-  if (const std::string fraction = style.fractions ? fraction_text(size) : ""; !fraction.empty()) return fraction;
-  int decimals = style.most;
+  if (const std::string fraction = style.with_fractions ? fraction_text(size) : ""; !fraction.empty()) return fraction;
+  int decimals = style.most_decimals;
   // Below 1, three significant digits are as precise as two decimals above 1.
   if (size > 0 && size < 1) decimals = std::max(decimals, std::min(9, 2 - int(std::floor(std::log10(size)))));
   double unit = 1;
@@ -869,7 +869,7 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
       if (!(axis == 0 ? shares[i].width : shares[i].height)) continue;
       const Extent extent = measured[i].extent(axis);
       if (!(extent.size > 0)) continue;
-      std::string text = dimension_text(extent.size * options.numbers_per_unit, options.decimals);
+      std::string text = dimension_text(extent.size * options.numbers_per_unit, options.number_style);
       if (extent.diameter != nullptr) {
         if (!diameters.take(*extent.diameter)) continue;
         text = counted(diameters.rings_about(*extent.diameter, measured[i]), diameter_sign + text);

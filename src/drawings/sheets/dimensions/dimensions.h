@@ -24,16 +24,14 @@ struct DimensionedView {
 
 /// How numbers are written.
 struct NumberStyle {
-  NumberStyle(int most_decimals = 2, bool with_fractions = false) : most(most_decimals), fractions(with_fractions) {}
-
-  int most;        ///< the most decimals, 0 to 6; numbers below 1 have three significant digits
-  bool fractions;  ///< true: numbers within 0.0005 of a multiple of 1/64 are fractions, "1 7/8"
+  int most_decimals = 2;        ///< 0 to 6; numbers below 1 have three significant digits
+  bool with_fractions = false;  ///< true: numbers within 0.0005 of a multiple of 1/64 are fractions, "1 7/8"
 };
 
 struct DimensionOptions {
   Dimensioning level = Dimensioning::diameters;
   double numbers_per_unit = 1;  ///< numbers per unit of length of the scene; above 0
-  NumberStyle decimals{};
+  NumberStyle number_style{};
   double text_height = 3.5;  ///< millimetres, as in TextStyle
   Lettering lettering = Lettering::strokes;
 };
@@ -55,9 +53,9 @@ struct OverallSizes {
 /// `positions` is from position_rooms_of().
 [[nodiscard]] glm::dvec2 room_for(const OverallSizes& sizes, const glm::dvec2& positions, double text_height);
 
-/// The text of a number, without trailing zeros, with at most so many decimals or three significant digits, whichever
-/// is more. If a half would have to be rounded, the text has one more digit: "50", "12.7", "1.875". Fractions are
-/// reduced: "1 7/8", "3/64", "2".
+/// The text of a number: a reduced fraction if the style has them and one fits ("1 7/8", "3/64", "2"), or else decimals
+/// without trailing zeros, at most as many as the style says or three significant digits, whichever is more. If a half
+/// would have to be rounded, the text has one more digit: "50", "12.7", "1.875".
 [[nodiscard]] std::string dimension_text(double number, const NumberStyle& style);
 
 struct Dimensions {
