@@ -810,10 +810,23 @@ TEST_F(DimensionsTest, RingsOfAThreadHaveOneNumber) {
     draw({beside, above});
     const Dimensions all = dimensioned({.level = Dimensioning::all});
     std::vector<std::string> expected{"40", "34", "40", "10", "20", "20", "12\u00d7\u230010"};
-    if (!is_square) expected.push_back("13\u00d7\u23008");
+    expected.push_back(is_square ? "12\u00d7\u23008" : "13\u00d7\u23008");
     expect_texts(all, expected);
     EXPECT_EQ(all.left_out, is_square ? 23u : 0u) << "the flanks, which are a millimetre apart";
   }
+}
+
+TEST_F(DimensionsTest, ShanksHaveDiametersFromTheSide) {
+  Mesh mesh;
+  add_rings(mesh, {20, 20}, {{0, 0}, {5, 0}, {5, 24}, {10, 24}, {10, 30}, {0, 30}});
+  add_rings(mesh, {60, 20}, {{0, 0}, {5, 0}, {5, 24}, {10, 24}, {10, 30}, {0, 30}});
+  scene_ = scene_of(mesh);
+  draw({beside, above});
+  expect_texts(dimensioned({.level = Dimensioning::all}),
+               {"60", "30", "\u230020", "24", "10", "\u230020", "2\u00d7\u230010"});
+  EXPECT_EQ(dimensioned({.level = Dimensioning::all}).undrawn, 0u);
+  // At lower levels they are counted.
+  EXPECT_EQ(dimensioned({.level = Dimensioning::holes}).undrawn, 2u);
 }
 
 TEST_F(DimensionsTest, KeepOffWhatIsTaken) {

@@ -38,6 +38,8 @@ constexpr double nearly_whole = 6.2;          // radians
 constexpr double widest_sagitta = 0.016;      // as a share of the radius, for sides of 20 degrees
 constexpr double same_place_on_paper = 0.02;  // millimetres of paper
 constexpr std::size_t most_arcs = 256;        // per view
+constexpr double shortest_side = 1;           // millimetres on paper, of a cylinder with a diameter from the side
+constexpr double straight = 1e-4;             // square of the sine of the greatest angle between parallel lines
 
 /// A circle of the scene as it appears in a view.
 struct SeenCircle {
@@ -68,6 +70,12 @@ bool is_drawn(const Round& round, double length, const View& camera) {
 struct SeenArc {
   const CircleArc* arc;
   glm::dvec2 middle, out;  ///< on the page; `out` points away from the centre and has unit length
+};
+
+/// A place from which a leader may start, and its direction.
+struct Anchor {
+  glm::dvec2 tip, out;
+  glm::dvec2 from;  ///< the opposite point of the circle, or the centre of the arc
 };
 
 /// A hexagon or square of the scene as it appears in a view.
@@ -177,6 +185,24 @@ struct MeasuredView {
     return foot;
   }
 
+  /// The leaders that a cylinder may have which is seen from the side: across its visible outlines.
+  [[nodiscard]] std::vector<Anchor> sides_of(const Round& cylinder) const {
+    std::vector<Anchor> anchors;
+    const glm::dvec2 from = on_page(cylinder.from), along = on_page(cylinder.to) - from;
+    const double length = glm::length(along), radius = cylinder.radius * millimetres_;
+    if (std::abs(glm::dot(cylinder.axis, view_.drawing->view.forward())) > square || length < shortest_side) return {};
+    const glm::dvec2 across = glm::dvec2(-along.y, along.x) / length;
+    for (const double share : {0.5, 0.25, 0.75})
+      for (const glm::dvec2& out : {across, -across}) {
+        const glm::dvec2 middle = from + share * along, tip = middle + radius * out;
+        if (!is_drawn_near(tip, same_place_on_paper + widest_sagitta * radius, out)) continue;
+        for (const double turn : {0.5, -0.5, 0.0})
+          anchors.push_back(
+              {tip, out * std::cos(turn) + glm::dvec2(-out.y, out.x) * std::sin(turn), middle - radius * out});
+      }
+    return anchors;
+  }
+
   [[nodiscard]] std::span<const Round> all_rounds() const {
     return view_.rounds != nullptr ? std::span<const Round>(view_.rounds->rounds) : std::span<const Round>();
   }
@@ -211,12 +237,13 @@ struct MeasuredView {
     if (2 * seen.outs.size() >= all.sides && !(all.sides == 4 && is_bound)) flats.push_back(std::move(seen));
   }
 
-  /// Whether a visible line passes within `near` of a place on the page.
-  [[nodiscard]] bool is_drawn_near(const glm::dvec2& place, double near) const {
+  /// Whether a visible line passes within `near` of a place on the page; across a direction if that is not 0.
+  [[nodiscard]] bool is_drawn_near(const glm::dvec2& place, double near, const glm::dvec2& across = {0, 0}) const {
     return std::any_of(view_.drawing->parts.begin(), view_.drawing->parts.end(), [&](const DrawnPart& part) {
       if (part.hidden_by != 0) return false;
       const glm::dvec2 from = view_.sheet->on_page(part.from), along = view_.sheet->on_page(part.to) - from;
-      const double length = glm::dot(along, along);
+      const double length = glm::dot(along, along), off = glm::dot(along, across);
+      if (off * off > straight * length) return false;
       const double t = length > 0 ? std::clamp(glm::dot(place - from, along) / length, 0.0, 1.0) : 0;
       return glm::distance(place, from + along * t) <= near;
     });
@@ -365,12 +392,16 @@ struct Diameters {
   /// Marks a cylinder and its continuations as dimensioned. \returns false if the cylinder was marked before. Blind
   /// holes that face each other differ.
   bool take(const Round& round) {
-    const bool is_new = std::none_of(taken.begin(), taken.end(), [&](const Round& other) {
+    const bool is_new = !is_taken(round);
+    if (is_new) taken.push_back(round);
+    return is_new;
+  }
+
+  [[nodiscard]] bool is_taken(const Round& round) const {
+    return std::any_of(taken.begin(), taken.end(), [&](const Round& other) {
       const bool face_each_other = has_all() && other.depth > 0 && round.depth > 0 && dot(other.axis, round.axis) < 0;
       return !face_each_other && is_same_radius(other, round) && is_coaxial(other, round);
     });
-    if (is_new) taken.push_back(round);
-    return is_new;
   }
 
   [[nodiscard]] bool has_all() const { return options.level >= Dimensioning::all; }
@@ -391,11 +422,6 @@ struct Diameters {
     return is_new;
   }
 
-  /// A place from which a leader may start, and its direction.
-  struct Anchor {
-    glm::dvec2 tip, out;
-    glm::dvec2 from;  ///< the opposite point of the circle, or the centre of the arc
-  };
   struct Group {
     std::string text;
     std::vector<SeenCircle> circles;  ///< at different places
@@ -518,6 +544,28 @@ struct Diameters {
       reached = std::max(reached, extent.second);
     }
     return rings >= fewest_rings ? rings : 1;
+  }
+
+  /// The diameters of cylinders that this view shows from the side, and no view along their axis. At most 64 cylinders
+  /// are looked at.
+  [[nodiscard]] std::vector<Group> sides_of(const MeasuredView& view) {
+    std::vector<Group> groups;
+    std::size_t looked_at = 0;
+    for (const Round& round : view.all_rounds()) {
+      if (round.kind != RoundKind::cylinder || round.turn < least_turn || is_taken(round)) continue;
+      if (++looked_at > most_circles) break;
+      const std::vector<Anchor> anchors = view.sides_of(round);
+      if (anchors.empty() || !take(round)) continue;
+      auto group = std::find_if(groups.begin(), groups.end(),
+                                [&](const Group& g) { return is_same_radius(*g.circles[0].round, round); });
+      if (group == groups.end()) group = groups.insert(group, {diameter_sign + text_of(2 * round.radius), {}});
+      group->count += rings_about(round, view);
+      group->factor = view.size_of(options.numbers_per_unit);
+      group->circles.push_back({&round, (anchors[0].tip + anchors[0].from) / 2.0, round.radius});
+      if (group->circles.size() <= most_tried)
+        group->anchors.insert(group->anchors.end(), anchors.begin(), anchors.end());
+    }
+    return groups;
   }
 
   /// The widths across flats that this view shows and no earlier view has shown.
@@ -897,6 +945,8 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
     }
     all.left_out += missed.size();
     for (const std::vector<Diameters::Group>& of_view : groups) diameters.add(of_view, all);
+    for (std::size_t i = 0; i < views.size() && options.level >= Dimensioning::all; ++i)
+      if (views[i].is_dimensioned) diameters.add(diameters.sides_of(measured[i]), all);
     for (std::size_t i = 0; i < views.size() && options.level >= Dimensioning::all; ++i)
       if (views[i].is_dimensioned) diameters.add(diameters.radii_of(measured[i]), all);
     for (std::size_t i = 0; i < views.size(); ++i)
