@@ -103,6 +103,19 @@ TEST(ShortStrokes, ThatLinkLinesStay) {
   EXPECT_NEAR(length_of(kept), length_of(whole), 1e-9);
 }
 
+TEST(Strokes, GoOnThroughJunctions) {
+  const auto count = [](const std::vector<glm::dvec2>& tips) {
+    Sketch sketch;
+    for (const glm::dvec2& tip : tips) sketch.add(EdgeKind::crease, {{50, 50}, tip});
+    return sketch.strokes(0).strokes.size();
+  };
+  EXPECT_EQ(count({{10, 50}, {90, 50}, {50, 90}}), 2u);
+  EXPECT_EQ(count({{10, 50}, {90, 50}, {50, 90}, {50, 10}}), 2u);
+  EXPECT_EQ(count({{10, 50}, {90, 58}, {90, 52}}), 2u) << "the straighter one";
+  EXPECT_EQ(count({{10, 50}, {90, 62}, {50, 90}}), 3u) << "17 degrees";
+  EXPECT_EQ(count({{50, 10}, {85, 70}, {15, 70}}), 3u) << "the corner of a cube";
+}
+
 TEST(ShortStrokes, OfOneKindLinkOthers) {
   Sketch sketch;
   sketch.add(EdgeKind::silhouette, {{0, 0}, {100, 0}})

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 
 #include "lines/strokes/parts.h"
 
@@ -26,8 +27,37 @@ struct SegmentEnd {
   friend auto operator<=>(const SegmentEnd&, const SegmentEnd&) = default;
 };
 
-/// By end: the only other end that it meets, or no_index.
-std::vector<std::uint32_t> partners(const std::vector<LineSegment>& segments) {
+constexpr double straight_on = 0.9659;  // the cosine of 15 degrees
+constexpr std::size_t most_at_junction = 8;
+
+/// Pairs the ends of a junction whose lines go on nearly straight, the straightest pairs first.
+void pair_straight(const std::vector<LineSegment>& segments, std::span<const SegmentEnd> ends,
+                   std::vector<std::uint32_t>& partner) {
+  if (ends.size() > most_at_junction) return;
+  const auto direction = [&](const SegmentEnd& end) {
+    const LineSegment& s = segments[end.number / 2];
+    const glm::dvec2 along = end.number % 2 == 0 ? s.to - s.from : s.from - s.to;
+    return along / glm::length(along);
+  };
+  for (;;) {
+    double best = straight_on;
+    const SegmentEnd *a = nullptr, *b = nullptr;
+    for (const SegmentEnd& one : ends)
+      for (const SegmentEnd& other : ends) {
+        if (one.number >= other.number || partner[one.number] != no_index || partner[other.number] != no_index)
+          continue;
+        const double cosine = -glm::dot(direction(one), direction(other));
+        if (cosine > best) best = cosine, a = &one, b = &other;
+      }
+    if (a == nullptr) return;
+    partner[a->number] = b->number;
+    partner[b->number] = a->number;
+  }
+}
+
+/// By end: the end that it goes on with, or no_index. Two ends that meet alone go on with each other; of more, with
+/// `through_junctions`, those that are nearly straight.
+std::vector<std::uint32_t> partners(const std::vector<LineSegment>& segments, bool through_junctions) {
   std::vector<SegmentEnd> ends;
   ends.reserve(2 * segments.size());
   for (std::size_t i = 0; i < segments.size(); ++i)
@@ -44,6 +74,8 @@ std::vector<std::uint32_t> partners(const std::vector<LineSegment>& segments) {
     if (last - first == 2) {
       partner[ends[first].number] = ends[first + 1].number;
       partner[ends[first + 1].number] = ends[first].number;
+    } else if (last - first > 2 && through_junctions) {
+      pair_straight(segments, {&ends[first], last - first}, partner);
     }
     first = last;
   }
@@ -231,10 +263,10 @@ struct ArcFinder {
 
 }  // namespace
 
-std::vector<Chain> chained(const std::vector<LineSegment>& segments) {
+std::vector<Chain> chained(const std::vector<LineSegment>& segments, bool through_junctions) {
   std::vector<Chain> chains;
   const auto place = [&](std::uint32_t end) { return end % 2 == 0 ? segments[end / 2].from : segments[end / 2].to; };
-  for_each_chain(partners(segments), [&](const std::vector<std::uint32_t>& ends, bool is_closed) {
+  for_each_chain(partners(segments, through_junctions), [&](const std::vector<std::uint32_t>& ends, bool is_closed) {
     Chain& chain = chains.emplace_back();
     chain.rank = segments[ends[0] / 2].rank;
     chain.is_closed = is_closed;

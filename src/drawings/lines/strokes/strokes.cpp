@@ -271,7 +271,7 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
   const IeeeScope ieee;
   report_progress(execution, "strokes", 0);
   const Ranked parts(surfaces, drawing, options);
-  std::vector<Chain> chains = chained(draw_once(parts.segments, options.apart, execution));
+  std::vector<Chain> chains = chained(draw_once(parts.segments, options.apart, execution), !options.nearest_first);
   // Where two tessellations of one circle pass through each other, chains are left over that are seen as points.
   std::erase_if(chains, [&](const Chain& chain) {
     return std::all_of(chain.points.begin(), chain.points.end(),
