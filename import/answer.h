@@ -31,6 +31,8 @@ class Answer {
   void error(std::string_view text) { write_text(import_frames::Kind::error, text); }
   /// `metres` for one unit; 0: unknown.
   void space(double metres, std::string_view up);
+  /// Names this program and its libraries. Only for an answer that depends on nothing but these and the model's bytes.
+  void files();
   void model(std::string_view glb) { write(import_frames::Kind::model, glb); }
 
  private:

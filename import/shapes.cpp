@@ -23,6 +23,7 @@
 #include <Poly_PolygonOnTriangulation.hxx>
 #include <RWMesh_FaceIterator.hxx>
 #include <STEPCAFControl_Reader.hxx>
+#include <STEPConstruct_ExternRefs.hxx>
 #include <TColStd_SequenceOfAsciiString.hxx>
 #include <TDF_Tool.hxx>
 #include <TDataStd_Name.hxx>
@@ -73,7 +74,8 @@ struct Document {
   Handle(TDocStd_Document) parts = new TDocStd_Document("BinXCAF");
   double millimetres = 1;
   bool has_unit = false;
-  bool is_loose = false;  ///< faces share no edges
+  bool is_loose = false;     ///< faces share no edges
+  bool names_files = false;  ///< further files, from which parts may come
 
   Document() { XCAFDoc_DocumentTool::Set(parts->Main()); }
   [[nodiscard]] Handle(XCAFDoc_ShapeTool) shapes() const { return XCAFDoc_DocumentTool::ShapeTool(parts->Main()); }
@@ -108,6 +110,9 @@ void read_step(const std::string& path, Answer& answer, Document& document) {
   const auto unit = lengths.IsEmpty() ? std::nullopt : millimetres_of(lengths.First());
   document.has_unit = unit.has_value();
   document.millimetres = unit.value_or(1);
+  STEPConstruct_ExternRefs references(reader.Reader().WS());
+  references.LoadExternRefs();
+  document.names_files = references.NbExternRefs() > 0;
   Handle(Progress) progress = new Progress(answer, kReadShare, kTransferShare);
   check(reader.Transfer(document.parts, progress->Start()), "STEP");
 }
@@ -371,6 +376,10 @@ void read_shapes(const std::string& path, std::string_view format, const Tessell
     read_brep(path, document);
   Model model;
   take_parts(document, tessellation, answer, model);
+  if (document.names_files)
+    answer.warning("parts in other files are missing, unless the model names these files by absolute paths");
+  else
+    answer.files();
   answer.space(document.has_unit ? document.millimetres / 1000 : 0, "z");
   answer.model(glb_of(model));
 }

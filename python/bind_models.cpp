@@ -34,12 +34,13 @@ std::string path_text(const py::object& path) {
 
 HeldScene load_scene(const py::object& source, const std::string& name, const std::optional<Axis>& up,
                      const std::optional<ModelFormat>& format, const std::vector<py::object>& allow_outside,
-                     double mesh_tolerance, double mesh_angle, double import_seconds, int threads,
+                     double mesh_tolerance, double mesh_angle, double import_seconds, bool cache, int threads,
                      const py::object& progress) {
   LoadOptions options;
   options.import.tolerance = mesh_tolerance;
   options.import.angle = glm::radians(mesh_angle);
   options.import.seconds = import_seconds;
+  options.import.cache = cache;
   for (const py::object& folder : allow_outside) options.allow_outside.push_back(path_text(folder));
   options.up = up;
   options.format = format;
@@ -89,7 +90,8 @@ void bind_models(py::module_& m) {
       .def("save", &save_scene, "path"_a, py::kw_only(), "of_triangles"_a = py::dict(), doc("Scene.save"));
   m.def("load", &load_scene, "source"_a, py::kw_only(), "name"_a = "memory", "up"_a = py::none(),
         "format"_a = py::none(), "allow_outside"_a = std::vector<py::object>(), "mesh_tolerance"_a = 0.0,
-        "mesh_angle"_a = 12.0, "import_seconds"_a = 600.0, "threads"_a = 0, "progress"_a = py::none(), doc("load"));
+        "mesh_angle"_a = 12.0, "import_seconds"_a = 600.0, "cache"_a = true, "threads"_a = 0, "progress"_a = py::none(),
+        doc("load"));
   m.def(
       "builtin", [](const std::string& name) { return HeldScene(builtin(name)); }, "name"_a, doc("builtin"));
   m.def(

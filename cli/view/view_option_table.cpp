@@ -75,6 +75,10 @@ constexpr Option view_options[] = {
      [](Settings& s, const Given& g) {
        s.load.import.bytes = std::uint64_t(g.number({0.1, 4096}) * 0x1p30);
      }},
+    {"no-cache", 0, "",
+     "STEP, IGES, BREP: neither keep triangles in ~/.cache/frontmost nor take them from there; by default a file that "
+     "was read before is quick to read.",
+     Group::model, for_every_model, [](Settings& s, const Given&) { s.load.import.cache = false; }},
 
     {"view", 0, "front|back|left|right|top|bottom|iso",
      "Look at the model from this side, far enough away to see all that --frame selects.", Group::camera, for_views,

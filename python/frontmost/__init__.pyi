@@ -196,14 +196,16 @@ class Scene:
 
 def load(source: Path | bytes, *, name: str = "memory", up: Up | None = None, format: Format | None = None,
          allow_outside: Sequence[Path] = [], mesh_tolerance: float = 0, mesh_angle: float = 12,
-         import_seconds: float = 600, threads: int = 0, progress: Progress = None) -> Scene:
+         import_seconds: float = 600, cache: bool = True, threads: int = 0, progress: Progress = None) -> Scene:
     """Reads a model: STL, PLY, OBJ, OFF, glTF, GLB, 3MF or a scene file; where frontmost-import is installed, STEP, IGES,
     BREP and other formats; "builtin:NAME"; or the bytes of a file.
 
     name: what messages call bytes. up, format: None takes the file's. allow_outside: folders in which, or below which,
     a scene file may name models, besides its own. mesh_tolerance: greatest distance of triangles from the surfaces of
     STEP, IGES and BREP, in millimetres; 0: 0.05 % of the diagonal. mesh_angle: greatest angle between the normals of
-    neighbours, in degrees. import_seconds: greatest time of frontmost-import. Raises Error with the file, the place and the reason: file_unreadable, file_malformed, unsupported, limit_exceeded.
+    neighbours, in degrees. import_seconds: greatest time of frontmost-import. cache: whether triangles of STEP, IGES
+    and BREP are kept in ~/.cache/frontmost, and taken from there the next time. Raises Error with the file, the place
+    and the reason: file_unreadable, file_malformed, unsupported, limit_exceeded.
     """
 
 def builtin(name: str) -> Scene:

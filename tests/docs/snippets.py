@@ -79,7 +79,8 @@ def run(program, frontmost, window):
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         sample_models.write(folder)
-        environment = dict(os.environ, PATH=f"{frontmost.resolve().parent}:{os.environ['PATH']}")
+        environment = dict(os.environ, PATH=f"{frontmost.resolve().parent}:{os.environ['PATH']}",
+                           XDG_CACHE_HOME=str(folder / "cache"))
         good = subprocess.run([program.resolve()], cwd=folder, timeout=900).returncode == 0
         commands = list(blocks("sh"))
         if window:  # a program that uses OpenGL

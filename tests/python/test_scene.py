@@ -311,7 +311,8 @@ def test_what_a_file_hides_is_told():
     assert [o.name for o in scene.objects] == ["cup"] and scene.hidden_by_file == ["lid"]
 
 
-def test_cad_files_are_read_where_the_importer_is(monkeypatch):
+def test_cad_files_are_read_where_the_importer_is(monkeypatch, tmp_path):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     cad = pathlib.Path(__file__).resolve().parent.parent.parent / "examples" / "cad" / "fixture.step"
     monkeypatch.setenv("FRONTMOST_IMPORT", "/missing")
     with pytest.raises(fm.Error, match="is read where frontmost-import is installed"):
@@ -320,6 +321,9 @@ def test_cad_files_are_read_where_the_importer_is(monkeypatch):
     if not importer.exists():
         pytest.skip("frontmost-import is not built")
     monkeypatch.setenv("FRONTMOST_IMPORT", str(importer))
-    coarse, fine = fm.load(cad), fm.load(cad, mesh_tolerance=0.01, mesh_angle=5, import_seconds=100)
+    coarse, fine = fm.load(cad), fm.load(cad, mesh_tolerance=0.01, mesh_angle=5, import_seconds=100, cache=False)
     assert fine.triangle_count > 2 * coarse.triangle_count
+    kept = list((tmp_path / "frontmost" / "import").iterdir())
+    assert len(kept) == 1
     assert fm.load(cad.read_bytes()).triangle_count == coarse.triangle_count
+    assert list((tmp_path / "frontmost" / "import").iterdir()) == kept

@@ -4,17 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <numbers>
 
 #include "frontmost/frontmost.h"
-#include "io/models/import_frames.h"
+#include "io/import/impostor.h"
 #include "support/effort.h"
 #include "support/models.h"
 #include "support/random_scene.h"
@@ -23,61 +21,7 @@
 namespace frontmost::test {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
-namespace fs = std::filesystem;
-
-/// Names the importer while it lives.
-class Importer {
- public:
-  explicit Importer(const std::string& path) { setenv("FRONTMOST_IMPORT", path.c_str(), 1); }
-  ~Importer() { unsetenv("FRONTMOST_IMPORT"); }
-};
-
-std::string error_of(const std::string& path, const LoadOptions& options = {}, const Execution& execution = {}) {
-  try {
-    (void)load(path, options, execution);
-    return "read";
-  } catch (const Error& error) {
-    return error.what();
-  }
-}
-
-// --- Importers that misbehave: shell scripts in its place.
-
-class Impostor {
- public:
-  /// `text`: what the shell does in place of importing.
-  explicit Impostor(const std::string& text) : importer_(folder_.file("import")) {
-    std::ofstream(folder_.file("import")) << "#!/bin/sh\n" << text << "\n";
-    fs::permissions(folder_.file("import"), fs::perms::owner_all);
-    std::ofstream(part()) << "ISO-10303-21;";
-  }
-  [[nodiscard]] std::string part() const { return folder_.file("part.step"); }
-  [[nodiscard]] std::string error(const LoadOptions& options = {}, const Execution& execution = {}) const {
-    const std::string text = error_of(part(), options, execution);
-    EXPECT_THAT(text, testing::StartsWith(part() + ": "));
-    return text.substr(std::min(text.size(), part().size() + 2));
-  }
-  [[nodiscard]] std::string operator/(const std::string& name) const { return folder_.file(name); }
-
- private:
-  ScratchFolder folder_;
-  Importer importer_;
-};
-
-/// A frame as a shell prints it.
-std::string frame_of(char kind, const std::string& payload) {
-  std::string text = "printf '";
-  text += kind;
-  for (int i = 0; i < 8; ++i) {
-    char octal[8];
-    std::snprintf(octal, sizeof octal, "\\%03o", unsigned(payload.size() >> 8 * i & 255));
-    text += octal;
-  }
-  return text + payload + "'\n";
-}
-
 TEST(Import, WithoutTheProgramTheErrorNamesAConverter) {
   const ScratchFolder folder;
   const Importer none(folder.file("none"));
@@ -267,6 +211,46 @@ TEST_F(CadFiles, IgesAndBrepHoldTheSamePlate) {
     EXPECT_EQ(scene.meshes[0].edge_circles.size(), 10u) << name << ": a rim at either end of a hole, and of the fillet";
     EXPECT_FALSE(scene.meshes[0].smooth_edges.empty()) << name << ": the fillet's borders";
   }
+}
+
+TEST_F(CadFiles, KeptTrianglesAreTheSame) {
+  for (const char* name : {"fixture.step", "plate.igs", "plate.brep"}) {
+    SCOPED_TRACE(name);
+    const std::size_t before = importer_.entries().size();
+    const Scene first = load(file(name));
+    EXPECT_EQ(importer_.entries().size(), before + 1);
+    const Scene second = load(file(name));
+    EXPECT_EQ(importer_.entries().size(), before + 1);
+    ASSERT_EQ(first.meshes.size(), second.meshes.size());
+    for (std::size_t i = 0; i < first.meshes.size(); ++i) {
+      EXPECT_EQ(first.meshes[i].positions, second.meshes[i].positions);
+      EXPECT_EQ(first.meshes[i].triangles, second.meshes[i].triangles);
+      EXPECT_EQ(first.meshes[i].sharp_edges, second.meshes[i].sharp_edges);
+      EXPECT_EQ(first.meshes[i].edge_circles.size(), second.meshes[i].edge_circles.size());
+    }
+    EXPECT_EQ(first.instances.size(), second.instances.size());
+    EXPECT_EQ(first.source.metres_per_unit, second.source.metres_per_unit);
+    EXPECT_EQ(first.up, second.up);
+  }
+}
+
+TEST_F(CadFiles, APartInAnotherFileIsNeitherKeptNorForgotten) {
+  const ScratchFolder folder;
+  const auto place_pin = [&](const std::string& path) {
+    std::string text = load_text(file("apart.step"), 1 << 20);
+    const std::string name = "'apart-pin.stp'";
+    for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1))
+      text.replace(at, name.size(), "'" + path + "'");
+    write_text(folder.file("apart.step"), text);
+    return load(folder.file("apart.step"));
+  };
+  fs::copy_file(file("apart-pin.stp"), folder.file("apart-pin.stp"));
+  const Scene scene = place_pin(folder.file("apart-pin.stp"));
+  EXPECT_EQ(scene.instances.size(), 1u);
+  EXPECT_THAT(scene.warnings,
+              testing::ElementsAre(HasSubstr("parts in other files are missing, unless the model names")));
+  EXPECT_TRUE(importer_.entries().empty()) << "the other file may change";
+  EXPECT_THAT(error_of(file("apart.step")), HasSubstr("the file has no shapes"));
 }
 
 TEST_F(CadFiles, BytesInMemoryAreRecognized) {

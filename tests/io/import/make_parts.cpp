@@ -4,6 +4,7 @@
 //   fixture.step        a plate with four holes and a rounded upper edge, 120 x 80 x 12 mm, and a pin in two of them
 //   fixture-inch.step   the same in inches
 //   plate.igs, plate.brep, plate-far.step (400 m from zero)
+//   apart.step          the pin alone, in a file of its own, apart-pin.stp
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
@@ -94,6 +95,23 @@ Handle(TDocStd_Document) far_plate() {
   return document;
 }
 
+/// An assembly of one part, which is in a file beside it.
+bool write_apart(const std::string& folder) {
+  Handle(TDocStd_Document) document = new TDocStd_Document("BinXCAF");
+  XCAFDoc_DocumentTool::Set(document->Main());
+  Handle(XCAFDoc_ShapeTool) shapes = XCAFDoc_DocumentTool::ShapeTool(document->Main());
+  const TDF_Label pin = shapes->AddShape(BRepPrimAPI_MakeCylinder(kHole, 30).Shape(), false),
+                  whole = shapes->NewShape();
+  TDataStd_Name::Set(pin, "pin");
+  TDataStd_Name::Set(whole, "whole");
+  shapes->AddComponent(whole, pin, TopLoc_Location());
+  shapes->UpdateAssemblies();
+  STEPCAFControl_Writer writer;
+  writer.SetNameMode(true);
+  return writer.Transfer(document, STEPControl_AsIs, "apart-") &&
+         writer.Write((folder + "apart.step").c_str()) == IFSelect_RetDone;
+}
+
 }  // namespace
 
 int main(int, char** words) {
@@ -101,6 +119,7 @@ int main(int, char** words) {
   bool is_written = write_step(fixture(), folder + "fixture.step", "MM");
   is_written = is_written && write_step(fixture(), folder + "fixture-inch.step", "INCH");
   is_written = is_written && write_step(far_plate(), folder + "plate-far.step", "MM");
+  is_written = is_written && write_apart(folder);
   IGESControl_Writer iges("MM", 0);
   is_written = is_written && iges.AddShape(plate()) && iges.Write((folder + "plate.igs").c_str());
   return is_written && BRepTools::Write(plate(), (folder + "plate.brep").c_str()) ? 0 : 1;

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "frontmost/frontmost.h"
+#include "io/import/impostor.h"
 #include "support/models.h"
 
 namespace frontmost::test {
@@ -97,7 +98,7 @@ class CadReference : public testing::TestWithParam<Reference> {};
 TEST_P(CadReference, DrawingsEqualExactOnes) {
   FRONTMOST_NEEDS_MODELS();
   constexpr double most = 0.001;
-  setenv("FRONTMOST_IMPORT", FRONTMOST_IMPORT_BUILT, 1);
+  const Importer importer(FRONTMOST_IMPORT_BUILT);
   const Scene scene = load(model(GetParam().model));
   const Surfaces surfaces(scene);
   // The reference has 24 chords for a circle, which leave the circle by more than our own tolerance.

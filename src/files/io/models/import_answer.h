@@ -13,10 +13,9 @@
 namespace frontmost {
 
 struct ImportAnswer {
-  std::vector<std::byte> model;  ///< binary glTF
-  std::vector<std::string> warnings;
-  std::optional<double> metres;  ///< length of a unit
-  Axis up = Axis::z;
+  std::vector<std::byte> model;              ///< binary glTF
+  std::vector<std::string> warnings, files;  ///< as they are sent
+  std::string space;                         ///< the last one that is sent
   bool has_ended = false;
 };
 
@@ -33,7 +32,6 @@ class ImportReceiver {
 
  private:
   void take(import_frames::Kind kind, std::string_view text);
-  void take_space(std::string_view text);
 
   const ModelSource& source_;
   const std::uint64_t most_bytes_;

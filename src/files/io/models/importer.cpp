@@ -3,6 +3,7 @@
 // file, which the reader of glTF checks as any other.
 //
 //   bytes of the model --> memory file --> standard input | frontmost-import | standard output --> frames --> glTF
+//                    \-------------------------- cache of answers ---------------------------/
 //
 // The importer may crash, hang, fill memory or send anything. It limits its own memory; its time is limited here. It is
 // killed, and waited for, however this function ends.
@@ -25,7 +26,7 @@
 
 #include "base/parallel.h"
 #include "io/descriptor.h"
-#include "io/models/import_answer.h"
+#include "io/models/import_cache.h"
 
 extern char** environ;  // NOLINT: of the system
 
@@ -153,7 +154,7 @@ ImportAnswer receive(const Process& process, const ImportOptions& options, const
   return std::move(receiver.answer);
 }
 
-std::string_view word_of(ModelFormat format) {
+std::string word_of(ModelFormat format) {
   return format == ModelFormat::step ? "step" : format == ModelFormat::iges ? "iges" : "brep";
 }
 
@@ -167,25 +168,55 @@ void check(const ImportOptions& options) {
   if (options.bytes < std::uint64_t(1) << 20) fail("bytes", "at least 1048576");
 }
 
+std::string joined_words(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += word + '\0';
+  return text;
+}
+
+/// The scene of a kept answer. An entry that is broken, whoever wrote it, is as good as none.
+std::optional<Scene> scene_of_kept(const ImportCache& cache, const ModelSource& source) {
+  std::optional<std::vector<std::byte>> frames = cache.find();
+  if (!frames) return std::nullopt;
+  try {
+    ImportReceiver receiver(source, source.import_options().bytes);
+    receiver.take(*frames);
+    if (!receiver.answer.has_ended) return std::nullopt;
+    Scene scene = scene_of(receiver.answer, source);
+    validate(scene);
+    return scene;
+  } catch (const Error& error) {
+    if (error.code() == ErrorCode::cancelled) throw;
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 Scene read_imported(ModelFormat format, Bytes bytes, const ModelSource& source) {
   const ImportOptions& import = source.import_options();
   check(import);
-  const std::string program = program_path();
-  if (access(program.c_str(), X_OK) != 0) refuse_import(bytes, source);
-  const std::string word =
-      format == ModelFormat::foreign ? foreign_suffix(source.name(), bytes) : std::string(word_of(format));
+  std::vector<std::string> words{program_path()};
+  if (access(words[0].c_str(), X_OK) != 0) refuse_import(bytes, source);
+  words.push_back(format == ModelFormat::foreign ? foreign_suffix(source.name(), bytes) : word_of(format));
+  words.push_back(text_of_number(import.tolerance));
+  words.push_back(text_of_number(import.angle));
+  // Meshes are read about as fast as answers.
+  const bool is_kept = import.cache && format != ModelFormat::foreign;
+  const ImportCache cache(is_kept ? ImportCache::folder_of_user() : "", joined_words(words), bytes);
+  if (std::optional<Scene> scene = scene_of_kept(cache, source)) return *std::move(scene);
+  words.push_back(std::to_string(source.execution().threads));
+  words.push_back(std::to_string(import.bytes));
   ImportAnswer answer;
   {
     Descriptor input;
     fill(input, bytes, source);
-    const Process process({program, word, text_of_number(import.tolerance), text_of_number(import.angle),
-                           std::to_string(source.execution().threads), std::to_string(import.bytes)},
-                          input, source);
+    const Process process(words, input, source);
     answer = receive(process, import, source);
   }
-  return scene_of(answer, source);
+  Scene scene = scene_of(answer, source);
+  cache.keep(answer);
+  return scene;
 }
 
 }  // namespace frontmost
