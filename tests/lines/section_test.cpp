@@ -386,6 +386,77 @@ TEST(Section, WholeObjectsStayWholeWhereTheyAreMet) {
   validate(section.scene);
 }
 
+/// A prism of six sides over the unit circle, whose upright edges are seams and whose rims follow circles.
+Mesh stated_prism() {
+  constexpr std::uint32_t sides = 6;
+  std::vector<glm::vec2> outline;
+  for (std::uint32_t i = 0; i < sides; ++i)
+    outline.emplace_back(std::cos(2 * pi * i / sides), std::sin(2 * pi * i / sides));
+  Mesh mesh = walls_over(outline);
+  for (const std::uint32_t first : {0u, sides}) {
+    mesh.edge_circles.push_back({{0, 0, first == 0 ? 0 : 1}, {0, 0, 1}, 1, first, sides});
+    for (std::uint32_t i = 0; i < sides; ++i) mesh.sharp_edges.emplace_back(first + i, first + (i + 1) % sides);
+  }
+  for (std::uint32_t i = 0; i < sides; ++i) mesh.smooth_edges.emplace_back(i, sides + i);
+  return mesh;
+}
+
+/// Creases and silhouettes that lie level, without the cut face's own. Upright ones may be silhouettes, but not
+/// creases.
+std::size_t rim_edges(const Scene& scene, const CuttingPlane& plane) {
+  const int across = axis_of(plane);
+  const Surfaces surfaces(scene);
+  std::size_t level = 0;
+  for (const DrawnEdge& edge : draw_lines(surfaces, frame(surfaces, 100, 100)).edges) {
+    const bool is_level = std::abs(edge.from.z - edge.to.z) < 1e-6, is_crease = edge.kind == EdgeKind::crease;
+    EXPECT_FALSE(is_crease && !is_level);
+    const bool is_of_face = edge.from[across] == plane.at && edge.to[across] == plane.at;
+    level += is_level && !is_of_face && (is_crease || edge.kind == EdgeKind::silhouette);
+  }
+  return level;
+}
+
+TEST(Section, StatedEdgesAreCutWithTheirTriangles) {
+  // Twice as large, mirrored, and moved. x = 0 becomes x = 5.
+  Scene scene = scene_of(stated_prism());
+  scene.instances[0].world_from_mesh = glm::dmat4({-2, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, 2, 0}, {5, 6, 7, 1});
+  const Section section = cut_of(scene, {Axis::x, 5});
+  const Mesh& left = section.scene.meshes[0];
+  validate(section.scene);
+  EXPECT_EQ(left.sharp_edges.size(), 2u * 4) << "of six edges of a rim two are behind, and two are cut";
+  ASSERT_EQ(left.edge_circles.size(), 2u);
+  for (const EdgeCircle& circle : left.edge_circles) {
+    EXPECT_EQ(circle.radius, 2);
+    EXPECT_EQ(circle.count, 4u);
+    EXPECT_EQ(circle.centre, glm::dvec3(5, 6, circle.first == 0 ? 7 : 9));
+    EXPECT_EQ(circle.axis, glm::dvec3(0, 0, 1));
+    double length = 0;
+    for (std::uint32_t i = circle.first; i < circle.first + circle.count; ++i) {
+      const glm::dvec3 from(left.positions[left.sharp_edges[i].x]), to(left.positions[left.sharp_edges[i].y]);
+      EXPECT_LE(std::max(from.x, to.x), 5);
+      length += glm::distance(from, to);
+    }
+    EXPECT_NEAR(length, 3 * 2, 1e-5) << "half of the rim";
+  }
+  // Sides of a hexagon meet at 60 degrees, but the file calls them smooth; rims are creases behind the plane.
+  EXPECT_EQ(rim_edges(section.scene, {Axis::x, 5}), 2u * 4);
+  const Rounds rounds = find_rounds(Surfaces(section.scene));
+  EXPECT_EQ(std::count_if(rounds.rounds.begin(), rounds.rounds.end(),
+                          [](const Round& round) { return round.kind == RoundKind::circle && round.radius == 2; }),
+            2);
+  // A plane that meets no seam, and one that leaves all.
+  EXPECT_EQ(cut_of(scene, {Axis::z, 8}).scene.meshes[0].edge_circles.size(), 1u);
+  EXPECT_EQ(rim_edges(cut_of(scene, {Axis::z, 8}).scene, {Axis::z, 8}), 6u);
+  EXPECT_EQ(cut_of(scene, {Axis::z, 100}).scene.meshes[0].sharp_edges.size(), 12u);
+  EXPECT_EQ(cut_of(scene, {Axis::z, 100}).scene.meshes[0].smooth_edges.size(), 6u);
+  const std::uint32_t whole[] = {0};
+  EXPECT_EQ(cut(Surfaces(scene), {Axis::x, 5}, {}, whole).scene.meshes[0].edge_circles.size(), 2u);
+  // Circles become ellipses.
+  scene.instances[0].world_from_mesh[0] *= 2;
+  EXPECT_TRUE(cut_of(scene, {Axis::x, 5}).scene.meshes[0].edge_circles.empty());
+  EXPECT_EQ(cut_of(scene, {Axis::x, 5}).scene.meshes[0].sharp_edges.size(), 8u);
+}
+
 TEST(Section, OpenMeshesAndBrokenNumbersAreNoSolids) {
   Mesh sheet;
   add_triangle(sheet, {-1, 0, -1}, {1, 0, -1}, {0, 0, 1});

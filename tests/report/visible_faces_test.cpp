@@ -264,6 +264,25 @@ TEST(KeptFaces, AreASceneOfTheirOwnThatLooksTheSame) {
   }
 }
 
+TEST(KeptFaces, KeepTheirStatedEdges) {
+  Scene scene = scene_of(bumpy_ball(4, 0, 1));
+  Mesh& mesh = scene.meshes[0];
+  const glm::uvec3 first = mesh.triangles[0], other = mesh.triangles[5];
+  mesh.sharp_edges = {{other.x, other.y}, {first.x, first.y}, {first.y, first.z}};
+  mesh.smooth_edges = {{first.z, first.x}};
+  mesh.edge_circles = {{{0, 0, 0}, {0, 0, 1}, 1, 0, 1}, {{0, 0, 0}, {0, 0, 1}, 2, 2, 1}};
+  const PrimitiveId ids[] = {0};
+  const Scene kept = keep_faces(scene, ids);
+  validate(kept);
+  const Mesh& left = kept.meshes[0];
+  const glm::uvec3 own = left.triangles[0];
+  EXPECT_THAT(left.sharp_edges, testing::ElementsAre(glm::uvec2(own.x, own.y), glm::uvec2(own.y, own.z)));
+  EXPECT_THAT(left.smooth_edges, testing::ElementsAre(glm::uvec2(own.z, own.x)));
+  ASSERT_EQ(left.edge_circles.size(), 1u);
+  EXPECT_EQ(left.edge_circles[0].radius, 2);
+  EXPECT_EQ(left.edge_circles[0].first, 1u);
+}
+
 TEST(KeptFaces, ThatAreNotOrTwiceAreRefused) {
   const Scene scene = scene_of(bumpy_ball(4, 0, 1));
   const auto count = PrimitiveId(triangle_count(scene));

@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "base/parallel.h"
+#include "scene/edges.h"
 #include "sections/regions.h"
 #include "surfaces/cluster_set.h"
 
@@ -42,6 +43,17 @@ struct ObjectCutter {
       if (t % triangles_per_poll == 0) check_cancelled(execution);
       add(t);
     }
+    append_edges(
+        mesh, instance.world_from_mesh, [&](const glm::uvec2& edge) { return left_of(edge); }, left);
+  }
+
+  /// The part of a stated edge behind the plane. Sides of triangles are cut at the same point.
+  std::optional<glm::uvec2> left_of(const glm::uvec2& edge) {
+    const glm::vec3 from = left.positions[edge.x], to = left.positions[edge.y];
+    if (!is_finite(from) || !is_finite(to) || (!plane.is_behind(from) && !plane.is_behind(to))) return std::nullopt;
+    if (plane.is_behind(from) && plane.is_behind(to)) return edge;
+    left.positions.push_back(meeting(plane, from, to));
+    return glm::uvec2(plane.is_behind(from) ? edge.x : edge.y, left.positions.size() - 1);
   }
 
   void add(std::uint32_t number) {
@@ -70,6 +82,8 @@ struct ObjectCutter {
     } else {
       add({first, b, c}, material);
       add({first, c, first + 1}, material);
+      // What is left of an object that states smooth edges is not judged by angles either.
+      if (!mesh.smooth_edges.empty()) left.smooth_edges.emplace_back(first, c);
       add_segment(on_b, on_c);
     }
   }
@@ -85,6 +99,7 @@ struct ObjectCutter {
 
   const PlaneAxes& plane;
   const Mesh& mesh;
+  const Instance& instance;
   const bool is_mirrored;
   Mesh left{};
   std::vector<CutSegment> segments{};
@@ -117,7 +132,8 @@ CutFace close(const std::vector<CutSegment>& segments, const PlaneAxes& plane, s
 }
 
 /// The whole mesh in world space, without attributes.
-Mesh placed(const Mesh& mesh, const ToWorld& to_world, bool is_mirrored) {
+Mesh placed(const Mesh& mesh, const Instance& instance, bool is_mirrored) {
+  const ToWorld to_world(instance.world_from_mesh);
   Mesh all;
   all.name = mesh.name;
   for (const glm::vec3& p : mesh.positions) all.positions.push_back(to_world(p));
@@ -125,8 +141,8 @@ Mesh placed(const Mesh& mesh, const ToWorld& to_world, bool is_mirrored) {
   if (is_mirrored)
     for (glm::uvec3& t : all.triangles) std::swap(t.y, t.z);
   all.material_ids = mesh.material_ids;
-  all.sharp_edges = mesh.sharp_edges;
-  all.smooth_edges = mesh.smooth_edges;
+  append_edges(
+      mesh, instance.world_from_mesh, [](const glm::uvec2& edge) { return std::optional(edge); }, all);
   return all;
 }
 
@@ -175,11 +191,11 @@ Section cut(const Surfaces& surfaces, const CuttingPlane& plane, const Execution
   for (std::uint32_t i = 0; i < model.instances.size(); ++i) {
     const Instance& instance = model.instances[i];
     const Mesh& mesh = model.meshes[instance.mesh];
-    ObjectCutter cutter{axes, mesh, surfaces.is_mirrored(i)};
+    ObjectCutter cutter{axes, mesh, instance, surfaces.is_mirrored(i)};
     cutter.run(ToWorld(instance.world_from_mesh), execution);
     const bool is_whole = std::find(whole.begin(), whole.end(), i) != whole.end();
     if (is_whole && !cutter.segments.empty()) {
-      cutter.left = placed(mesh, ToWorld(instance.world_from_mesh), surfaces.is_mirrored(i));
+      cutter.left = placed(mesh, instance, surfaces.is_mirrored(i));
     } else if (!cutter.segments.empty()) {
       std::vector<Material>& materials = scene.materials;
       section.faces.push_back(close(cutter.segments, axes, std::uint32_t(materials.size()), cutter.left, execution));

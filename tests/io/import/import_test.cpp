@@ -296,6 +296,30 @@ TEST_F(CadFiles, DrawingsHaveTheSharpEdgesAlone) {
   EXPECT_EQ(rims, 8) << "with the radius of the file, to the last bit";
 }
 
+TEST_F(CadFiles, SectionsHaveTheSharpEdgesAlone) {
+  LoadOptions coarse;  // facets that meet at 45 degrees, which angles alone would call sharp
+  coarse.import = {.tolerance = 100, .angle = 1.5};
+  const Scene scene = load(file("plate.brep"), coarse);
+  // Through the axes of two holes; the half with y above 20 is left.
+  const Section section = cut(Surfaces(scene), {Axis::minus_y, 20});
+  validate(section.scene);
+  const Surfaces left(section.scene);
+  for (const DrawnEdge& edge : draw_lines(left, frontmost::frame(left, 400, 400)).edges) {
+    if (edge.kind != EdgeKind::crease) continue;
+    const bool is_upright = std::abs(edge.from.z - edge.to.z) > 1e-6;
+    const bool is_outer = std::abs(edge.from.x - 60) > 59.9 && edge.from.y > 79.9;
+    EXPECT_FALSE(is_upright && !is_outer) << "a facet of a hole at " << edge.from.x << ", " << edge.from.y;
+  }
+  const Rounds rounds = find_rounds(left);
+  double turns = 0;
+  for (const Round& round : rounds.rounds) {
+    if (round.kind != RoundKind::circle) continue;
+    EXPECT_EQ(round.radius, 6);
+    turns += round.turn / (2 * kPi);
+  }
+  EXPECT_NEAR(turns, 4 + 2, 0.01) << "four whole rims, and four halves";
+}
+
 TEST_F(CadFiles, TheToleranceIsKept) {
   LoadOptions fine;
   fine.import.tolerance = 0.001;

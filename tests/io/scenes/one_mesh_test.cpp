@@ -47,6 +47,30 @@ TEST(OneMesh, HasTheTrianglesOfAllPartsInTheirOrder) {
   EXPECT_EQ(mesh.face_ids, (std::vector<std::uint32_t>{0, 0, 1, 1, 2}));
 }
 
+TEST(OneMesh, KeepsStatedEdgesAndCircles) {
+  Scene model = model_of_parts();
+  model.meshes[0].sharp_edges = {{0, 1}, {1, 2}};
+  model.meshes[0].edge_circles = {{{0.5, 0.5, 0}, {0, 0, 1}, 0.75, 1, 1}};
+  model.meshes[1].smooth_edges = {{0, 2}};
+  model.meshes[1].sharp_edges = {{1, 2}};
+  model.meshes[1].edge_circles = {{{0, 1, 0}, {0, 0, 1}, 3, 0, 1}};
+  Scene one;
+  one.materials = model.materials;
+  add(one, one_mesh(model));
+  EXPECT_NO_THROW(validate(one));
+  const Mesh& mesh = one.meshes[0];
+  EXPECT_EQ(mesh.sharp_edges, (std::vector<glm::uvec2>{{0, 1}, {1, 2}, {4, 5}, {5, 6}, {9, 10}}));
+  EXPECT_EQ(mesh.smooth_edges, (std::vector<glm::uvec2>{{8, 10}}));
+  ASSERT_EQ(mesh.edge_circles.size(), 3u);
+  EXPECT_EQ(mesh.edge_circles[1].centre, glm::dvec3(-0.5, 0.5, 0));
+  EXPECT_EQ(mesh.edge_circles[1].first, 3u);
+  EXPECT_EQ(mesh.edge_circles[2].centre, glm::dvec3(2, 5, 6)) << "turned, enlarged and moved";
+  EXPECT_EQ(mesh.edge_circles[2].radius, 6);
+  EXPECT_EQ(mesh.edge_circles[2].first, 4u);
+  model.instances[2].world_from_mesh[0] *= 3;
+  EXPECT_EQ(one_mesh(model).edge_circles.size(), 2u) << "an ellipse is no circle";
+}
+
 TEST(OneMesh, TurnsNormalsAndFillsWhatIsMissing) {
   const Scene model = model_of_parts();
   const Mesh mesh = one_mesh(model);

@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "base/parallel.h"
+#include "scene/edges.h"
 
 namespace frontmost::lines_detail {
 namespace {
 
-constexpr double kSimilar = 1e-6;
 constexpr double kOffCircle = 0.01;  // share of the radius by which an end may leave its circle
 constexpr std::size_t kStatedPerPart = 4096;
 
@@ -20,27 +20,22 @@ bool is_before(const glm::uvec2& a, const glm::uvec2& b) { return a.x != b.x ? a
 /// Whether the edge has no length, or an end that is not finite.
 bool is_none(const glm::uvec2& edge) { return edge.x == edge.y || edge.y == no_index; }
 
-/// Whether the ends of the circle's edges lie near the circle. Files may state anything.
+/// Whether the ends of the circle's edges lie near the circle. Files may state anything. An edge that a section cuts
+/// has an end on its chord, which may be as far inside as the middle of the longest chord.
 bool lies_on(const StatedCircle& circle, std::span<const glm::vec3> places) {
+  double longest = 0;
+  for (const glm::uvec2& edge : circle.edges)
+    longest = std::max(longest, glm::distance(glm::dvec3(places[edge.x]), glm::dvec3(places[edge.y])));
+  const double half = std::min(longest / 2, circle.radius);
+  const double inside = circle.radius - std::sqrt(circle.radius * circle.radius - half * half);
   return std::all_of(circle.edges.begin(), circle.edges.end(), [&](const glm::uvec2& edge) {
     const auto is_on = [&](std::uint32_t end) {
       const glm::dvec3 out = glm::dvec3(places[end]) - circle.centre;
-      const double height = glm::dot(out, circle.axis), width = glm::length(out - height * circle.axis);
-      return std::abs(height) + std::abs(width - circle.radius) <= kOffCircle * circle.radius;
+      const double height = glm::dot(out, circle.axis), away = glm::length(out - height * circle.axis) - circle.radius;
+      return std::abs(height) + std::max(away, -away - inside) <= kOffCircle * circle.radius;
     };
     return is_on(edge.x) && is_on(edge.y);
   });
-}
-
-/// The factor by which a transform scales all lengths; none if it does not scale all alike, so that circles stay round.
-std::optional<double> scale_of(const glm::dmat4& world_from_mesh) {
-  const glm::dmat3 m(world_from_mesh);
-  const double square = glm::dot(m[0], m[0]), slack = kSimilar * square;
-  const auto is_near = [&](double a, double b) { return std::abs(a - b) <= slack; };
-  const bool is_similar = square > 0 && is_near(glm::dot(m[1], m[1]), square) &&
-                          is_near(glm::dot(m[2], m[2]), square) && is_near(glm::dot(m[0], m[1]), 0) &&
-                          is_near(glm::dot(m[1], m[2]), 0) && is_near(glm::dot(m[2], m[0]), 0);
-  return is_similar ? std::optional(std::sqrt(square)) : std::nullopt;
 }
 
 }  // namespace
@@ -78,13 +73,10 @@ StatedEdges::StatedEdges(const Scene& scene, const Buffer<std::uint32_t>& vertic
     if (is_covered[i] || is_one_of(mesh.sharp_edges)) {
       is_any = true;
       for (const glm::uvec2& edge : mesh.sharp_edges) sharp.push_back(welded(edge));
-      const std::optional<double> scale = scale_of(instance.world_from_mesh);
-      for (std::size_t c = 0; scale && c < mesh.edge_circles.size(); ++c) {
-        const EdgeCircle& circle = mesh.edge_circles[c];
-        StatedCircle placed{glm::dvec3(instance.world_from_mesh * glm::dvec4(circle.centre, 1)),
-                            glm::dmat3(instance.world_from_mesh) * circle.axis / *scale,
-                            circle.radius * *scale,
-                            {}};
+      for (const EdgeCircle& circle : mesh.edge_circles) {
+        const std::optional<EdgeCircle> own = transformed(circle, instance.world_from_mesh);
+        if (!own) break;
+        StatedCircle placed{own->centre, own->axis, own->radius, {}};
         for (std::uint32_t k = circle.first; k < circle.first + circle.count; ++k)
           placed.edges.push_back(welded(mesh.sharp_edges[k]));
         std::erase_if(placed.edges, is_none);

@@ -11,6 +11,7 @@
 
 #include "io/models/mesh_building.h"
 #include "io/scenes/scene_file.h"
+#include "scene/edges.h"
 
 namespace frontmost {
 namespace {
@@ -129,7 +130,8 @@ std::uint64_t bytes_of(const Mesh& mesh) {
   std::uint64_t bytes = mesh.positions.size() * sizeof(glm::vec3) + bytes_of(mesh.normals) + bytes_of(mesh.texcoords) +
                         bytes_of(mesh.colors) + mesh.triangles.size() * (2 + corner_lists) * sizeof(glm::uvec3);
   for (const Attribute<glm::vec2>& set : mesh.further_texcoords) bytes += bytes_of(set);
-  return bytes + (mesh.sharp_edges.size() + mesh.smooth_edges.size()) * sizeof(glm::uvec2);
+  return bytes + (mesh.sharp_edges.size() + mesh.smooth_edges.size()) * sizeof(glm::uvec2) +
+         mesh.edge_circles.size() * sizeof(EdgeCircle);
 }
 
 /// Returns the total size of the files that a model was read from.
@@ -393,11 +395,10 @@ Mesh one_mesh(const Scene& model) {
   all.name = model.name;
   all.origin = model.origin;
   for (const PartOfModel& part : parts) {
-    // Circles are left out: they may become ellipses.
     const auto shift = std::uint32_t(all.positions.size());
-    for (const glm::uvec2& edge : part.mesh.sharp_edges) all.sharp_edges.push_back(edge + shift);
-    for (const glm::uvec2& edge : part.mesh.smooth_edges) all.smooth_edges.push_back(edge + shift);
-    append_triangles(part.mesh.triangles, std::uint32_t(all.positions.size()), part.is_mirrored, all.triangles);
+    const auto shifted = [&](const glm::uvec2& edge) { return std::optional(edge + shift); };
+    append_edges(part.mesh, part.model_from_mesh, shifted, all);
+    append_triangles(part.mesh.triangles, shift, part.is_mirrored, all.triangles);
     for (const glm::vec3& p : part.mesh.positions)
       all.positions.emplace_back(part.model_from_mesh * glm::dvec4(glm::dvec3(p), 1));
   }
