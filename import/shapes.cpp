@@ -42,6 +42,7 @@
 
 #include "import/answer.h"
 #include "import/glb.h"
+#include "import/winding.h"
 
 namespace frontmost::import {
 namespace {
@@ -52,6 +53,7 @@ constexpr double kSewn = 1e-5;         // share of the diagonal: edges of faces 
 constexpr double kOnCircle = 2e-5;     // share of the radius by which a curve may leave its circle
 constexpr int kCirclePoints = 17;      // points of a curve that are held against a circle
 constexpr double kWidestCircle = 1e4;  // diagonals: a circle of a greater radius counts as a line
+constexpr double kZero = 1e-12;        // diagonals: nearer to a plane through zero than floats are to each other
 constexpr double kReadShare = 0.3, kTransferShare = 0.4;  // of all time
 
 /// Tells the progress of OpenCASCADE as a part of all progress.
@@ -203,7 +205,9 @@ class PartMaker {
       const gp_Pnt p = face.NodeTransformed(i);
       const gp_Dir n = face.NormalTransformed(i);
       for (int axis = 1; axis <= 3; ++axis) {
-        part_.positions.push_back(float(p.Coord(axis) * scale_));
+        // Faces that meet at 0 have coordinates of 1e-16, which differ as floats.
+        const bool is_zero = std::abs(p.Coord(axis)) < kZero * diagonal_;
+        part_.positions.push_back(is_zero ? 0 : float(p.Coord(axis) * scale_));
         part_.normals.push_back(float(n.Coord(axis)));
       }
     }
@@ -299,7 +303,7 @@ std::array<double, 16> matrix_of(const gp_Trsf& t, double scale) {
   return matrix;
 }
 
-/// A shape whose faces share the edges at which they meet. IGES does not say which side of a face is the outside.
+/// A shape whose faces share the edges at which they meet.
 TopoDS_Shape sewn(const TopoDS_Shape& shape, double tolerance) {
   BRepBuilderAPI_Sewing sewing(tolerance);
   sewing.Add(shape);
@@ -343,6 +347,7 @@ void take_parts(const Document& document, const Tessellation& wanted, Answer& an
       TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(leaf.RefLabel);
       if (document.is_loose) shape = sewn(shape, kSewn * diagonal);
       BRepMesh_IncrementalMesh mesher(shape, parameters);
+      if (document.is_loose) shape = wound_alike(shape);
       PartMaker maker(model, 1 / document.millimetres, diagonal);
       found = alike.insert(alike.end(), {leaf.Style, std::uint32_t(model.parts.size())});
       model.parts.push_back(maker.make(document.is_loose
@@ -359,7 +364,9 @@ void take_parts(const Document& document, const Tessellation& wanted, Answer& an
   }
   if (model.placed.empty()) throw Unreadable("the file has no faces");
   if (bare_faces > 0)
-    answer.warning(std::to_string(bare_faces) + " faces are left out, because OpenCASCADE finds no triangles for them");
+    answer.warning(bare_faces == 1 ? "1 face is left out, because OpenCASCADE finds no triangles for it"
+                                   : std::to_string(bare_faces) +
+                                         " faces are left out, because OpenCASCADE finds no triangles for them");
 }
 
 }  // namespace

@@ -172,7 +172,9 @@ TEST(ImportCache, MaliciousEntriesAreReadAgain) {
     LoadOptions options;
     const Scene scene = load(importer.part(), options);
     EXPECT_NO_THROW(validate(scene));
-    if (i < 2) EXPECT_EQ(importer.runs_after_loading(), ++runs);
+    if (i < 2) {
+      EXPECT_EQ(importer.runs_after_loading(), ++runs);
+    }
   }
 }
 

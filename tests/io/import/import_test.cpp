@@ -83,7 +83,9 @@ TEST(Import, TimeIsLimitedAndTheImporterGoes) {
   EXPECT_EQ(impostor.error(options), "could not be read within 0.2 seconds (--import-seconds)");
   std::ifstream id(impostor / "import.id");
   // It may have been ended before its first line.
-  if (pid_t number = 0; id >> number) EXPECT_NE(kill(number, 0), 0);
+  if (pid_t number = 0; id >> number) {
+    EXPECT_NE(kill(number, 0), 0);
+  }
 }
 
 TEST(Import, ACancelledLoadEndsTheImporter) {
@@ -203,14 +205,30 @@ TEST_F(CadFiles, CoordinatesAreThoseOfTheFile) {
 }
 
 TEST_F(CadFiles, IgesAndBrepHoldTheSamePlate) {
-  for (const char* name : {"plate.igs", "plate.brep"}) {
+  for (const std::string name : {"plate.igs", "turned.igs", "plate.brep"}) {
     const Scene scene = load(file(name));
-    EXPECT_EQ(scene.source.format, name[6] == 'i' ? ModelFormat::iges : ModelFormat::brep);
+    EXPECT_EQ(scene.source.format, name == "plate.brep" ? ModelFormat::brep : ModelFormat::iges);
     EXPECT_EQ(scene.up, Axis::z);
+    EXPECT_FALSE(inspect(scene).meshes[0].odd.any()) << name << ": closed, and wound alike";
+    EXPECT_NEAR(volume_of(Surfaces(scene)), plate_volume, 0.01 * plate_volume) << name << ": outside out";
     EXPECT_NEAR(area_of(Surfaces(scene)), plate_area, 0.01 * plate_area) << name;
     EXPECT_EQ(scene.meshes[0].edge_circles.size(), 10u) << name << ": a rim at either end of a hole, and of the fillet";
     EXPECT_FALSE(scene.meshes[0].smooth_edges.empty()) << name << ": the fillet's borders";
   }
+}
+
+TEST_F(CadFiles, FacesWithoutTrianglesAreCounted) {
+  for (int i = 0; i < 2; ++i) {  // the second time from the cache
+    const Scene one = load(file("bare-1.brep")), two = load(file("bare-2.brep"));
+    EXPECT_THAT(one.warnings,
+                testing::ElementsAre(file("bare-1.brep") +
+                                     ": 1 face is left out, because OpenCASCADE finds no triangles for it"));
+    EXPECT_THAT(two.warnings,
+                testing::ElementsAre(file("bare-2.brep") +
+                                     ": 2 faces are left out, because OpenCASCADE finds no triangles for them"));
+    EXPECT_NEAR(volume_of(Surfaces(two)), kPi * 36 * 30, 0.01 * kPi * 36 * 30) << "the pin alone";
+  }
+  EXPECT_THAT(load(file("fixture.step")).warnings, testing::IsEmpty());
 }
 
 TEST_F(CadFiles, KeptTrianglesAreTheSame) {

@@ -4,12 +4,17 @@
 //   fixture.step        a plate with four holes and a rounded upper edge, 120 x 80 x 12 mm, and a pin in two of them
 //   fixture-inch.step   the same in inches
 //   plate.igs, plate.brep, plate-far.step (400 m from zero)
+//   turned.igs          the faces of the plate apart, every second one reversed
+//   bare-1.brep, bare-2.brep (a pin, and one or two faces whose outlines are open)
 //   apart.step          the pin alone, in a file of its own, apart-pin.stp
 #include <BRepAlgoAPI_Cut.hxx>
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Interface_Static.hxx>
@@ -21,10 +26,13 @@
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <TopoDS_Wire.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <gp_Ax2.hxx>
+#include <gp_Pln.hxx>
 #include <string>
 
 namespace {
@@ -95,6 +103,35 @@ Handle(TDocStd_Document) far_plate() {
   return document;
 }
 
+TopoDS_Shape turned_faces() {
+  TopoDS_Compound faces;
+  BRep_Builder builder;
+  builder.MakeCompound(faces);
+  bool is_reversed = false;
+  for (TopExp_Explorer all(plate(), TopAbs_FACE); all.More(); all.Next(), is_reversed = !is_reversed)
+    builder.Add(faces, is_reversed ? all.Current().Reversed() : all.Current());
+  return faces;
+}
+
+/// A part of a pin and of faces that no triangles can fill.
+bool write_bare(const std::string& path, int faces) {
+  TopoDS_Compound part, file;
+  BRep_Builder builder;
+  builder.MakeCompound(part);
+  builder.MakeCompound(file);
+  builder.Add(part, BRepPrimAPI_MakeCylinder(kHole, 30).Shape());
+  for (int i = 0; i < faces; ++i) {
+    const double z = 40 + i;
+    TopoDS_Wire open;
+    builder.MakeWire(open);
+    builder.Add(open, BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, z), gp_Pnt(1, 0, z)).Edge());
+    builder.Add(open, BRepBuilderAPI_MakeEdge(gp_Pnt(1, 0, z), gp_Pnt(1, 1, z)).Edge());
+    builder.Add(part, BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(0, 0, z), gp_Dir(0, 0, 1)), open, false).Face());
+  }
+  builder.Add(file, part);
+  return BRepTools::Write(file, path.c_str());
+}
+
 /// An assembly of one part, which is in a file beside it.
 bool write_apart(const std::string& folder) {
   Handle(TDocStd_Document) document = new TDocStd_Document("BinXCAF");
@@ -120,7 +157,11 @@ int main(int, char** words) {
   is_written = is_written && write_step(fixture(), folder + "fixture-inch.step", "INCH");
   is_written = is_written && write_step(far_plate(), folder + "plate-far.step", "MM");
   is_written = is_written && write_apart(folder);
-  IGESControl_Writer iges("MM", 0);
-  is_written = is_written && iges.AddShape(plate()) && iges.Write((folder + "plate.igs").c_str());
+  is_written = is_written && write_bare(folder + "bare-1.brep", 1) && write_bare(folder + "bare-2.brep", 2);
+  const auto write_iges = [&](const TopoDS_Shape& shape, const char* name) {
+    IGESControl_Writer iges("MM", 0);
+    return iges.AddShape(shape) && iges.Write((folder + name).c_str());
+  };
+  is_written = is_written && write_iges(plate(), "plate.igs") && write_iges(turned_faces(), "turned.igs");
   return is_written && BRepTools::Write(plate(), (folder + "plate.brep").c_str()) ? 0 : 1;
 }
