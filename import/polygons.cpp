@@ -9,7 +9,9 @@
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
+#include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 
 #include "import/answer.h"
@@ -33,10 +35,13 @@ double metres_of(const aiScene& scene, const std::string& suffix) {
   float single = 0;
   double centimetres = 0;
   if (suffix != "fbx" || scene.mMetaData == nullptr) return 0;
-  if (scene.mMetaData->Get("UnitScaleFactor", single))
-    centimetres = double(single);
-  else
+  if (scene.mMetaData->Get("UnitScaleFactor", single)) {
+    char text[32];  // the decimal number that the float stands for
+    *std::to_chars(text, text + sizeof text - 1, single).ptr = 0;
+    centimetres = std::strtod(text, nullptr);
+  } else {
     scene.mMetaData->Get("UnitScaleFactor", centimetres);
+  }
   return std::isfinite(centimetres) && centimetres > 0 ? centimetres / 100 : 0;
 }
 
@@ -66,6 +71,9 @@ void read_polygons(std::string_view bytes, const std::string& suffix, Answer& an
   if (scene == nullptr) throw Unreadable(importer.GetErrorString());
   // assimp invents names for files in memory and for roots.
   if (std::string_view(scene->mRootNode->mName.C_Str()).starts_with("$")) scene->mRootNode->mName = "";
+  const auto turns = [&](const char* tag) { return bytes.find(tag) != std::string_view::npos; };
+  if (suffix == "amf" && (turns("<rx>") || turns("<ry>") || turns("<rz>")))
+    answer.warning("objects that the file turns stand at wrong places, because assimp does not turn those of AMF");
   answer.progress(0.7);
   answer.space(metres_of(*scene, suffix), up_of(*scene, suffix));
   Assimp::Exporter exporter;

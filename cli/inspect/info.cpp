@@ -6,6 +6,7 @@
 #include <frontmost/scene.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <optional>
 #include <string>
@@ -60,7 +61,7 @@ constexpr NamedLength units[] = {{"micron", 1e-6}, {"millimetre", 1e-3}, {"centi
 
 std::string_view name_of(const ModelUnit& unit) {
   for (const NamedLength& named : units)
-    if (named.metres == unit.metres) return named.name;
+    if (std::abs(named.metres - unit.metres) <= 1e-9 * unit.metres) return named.name;
   return "";
 }
 
@@ -235,7 +236,9 @@ std::string unit_line(const std::optional<ModelUnit>& unit, const Box& bounds) {
                             : greatest < 2   ? NamedLength{"mm", 1e-3}
                                              : NamedLength{"m", 1};
   const glm::dvec3 size = metres / shown.metres;
-  return fmt::format("  unit       {}{}: {:.4g} x {:.4g} x {:.4g} {}\n", name_of(*unit),
+  const std::string_view name = name_of(*unit);
+  return fmt::format("  unit       {}{}: {:.4g} x {:.4g} x {:.4g} {}\n",
+                     name.empty() ? fmt::format("{:.6g} m", unit->metres) : std::string(name),
                      unit->is_guess ? ", a guess" : "", size.x, size.y, size.z, shown.name);
 }
 

@@ -102,6 +102,15 @@ TEST(Import, OptionsAreChecked) {
   EXPECT_THAT(error_of(impostor.part(), options), HasSubstr("tolerance: must be"));
 }
 
+double volume_of(const Surfaces& surfaces) {
+  double six_times = 0;
+  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
+    const auto t = surfaces.corners(id);
+    six_times += glm::dot(glm::dvec3(t[0]), glm::cross(glm::dvec3(t[1]), glm::dvec3(t[2])));
+  }
+  return six_times / 6;
+}
+
 #ifdef FRONTMOST_IMPORT_POLYGONS
 
 /// A triangle (0, 0, 0), (1, 0, 0), (0, 2, 0), written by hand in each format.
@@ -130,6 +139,75 @@ TEST(Import, ForeignMeshesAreRead) {
   }
 }
 
+/// A crane in each format: `base`, a red box of 4 x 2 x 1 at zero, and `jib`, a blue one of twice its size, turned by
+/// 90 degrees about z, at (1, 1, 6), where the format has places by way of `mast` at (1, 1, 1). The texts are written
+/// by hand; crane.fbx, .3ds and .lwo are binary, made from the formats' descriptions.
+struct Crane {
+  const char* suffix;
+  glm::dmat3 turned;  ///< what assimp does to make y the upward axis, or the space right-handed; columns
+  Axis up = Axis::y;
+  std::optional<double> metres{};
+  double scale = 1;
+  const char *base = "base", *jib = "jib";
+  bool has_colors = true;
+};
+
+const glm::dmat3 as_is(1), z_to_y({1, 0, 0}, {0, 0, -1}, {0, 1, 0}), z_back({1, 0, 0}, {0, 1, 0}, {0, 0, -1});
+
+class ForeignCrane : public testing::TestWithParam<Crane> {};
+
+TEST_P(ForeignCrane, ArrivesWithPlacesNamesAndColours) {
+  const Crane& crane = GetParam();
+  const Importer importer(FRONTMOST_IMPORT_BUILT);
+  const Scene scene = load(std::string(FRONTMOST_MESHES "/crane.") + crane.suffix);
+  EXPECT_THAT(scene.warnings, testing::IsEmpty());
+  EXPECT_EQ(scene.up, crane.up);
+  EXPECT_EQ(scene.source.metres_per_unit, crane.metres);
+  ASSERT_EQ(scene.instances.size(), 2u);
+  const Surfaces surfaces(scene);
+  for (const Instance& instance : scene.instances) {
+    const bool is_base = instance.name == crane.base;
+    EXPECT_EQ(instance.name, is_base ? crane.base : crane.jib);
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    EXPECT_EQ(mesh.triangles.size(), 12u);
+    glm::dvec3 low(1e9), high(-1e9);
+    for (const glm::vec3& p : mesh.positions) {
+      const glm::dvec3 at(instance.world_from_mesh * glm::dvec4(glm::dvec3(p), 1));
+      low = glm::min(low, at);
+      high = glm::max(high, at);
+    }
+    const glm::dvec3 a = crane.turned * (is_base ? glm::dvec3(0) : glm::dvec3(-3, 1, 6)) * crane.scale,
+                     b = crane.turned * (is_base ? glm::dvec3(4, 2, 1) : glm::dvec3(1, 9, 8)) * crane.scale;
+    EXPECT_LT(glm::distance(low, glm::min(a, b)), 1e-5) << instance.name;
+    EXPECT_LT(glm::distance(high, glm::max(a, b)), 1e-5) << instance.name;
+    if (!crane.has_colors) continue;
+    const std::uint32_t number = mesh.material_of(0);
+    glm::vec4 color = number == no_index ? glm::vec4(1) : scene.materials[number].base_color;
+    if (!mesh.colors.empty()) color *= mesh.colors.values[mesh.corners(mesh.colors, 0).x];
+    EXPECT_GT(color[is_base ? 0 : 2], 0.5) << instance.name;
+    EXPECT_EQ(color[is_base ? 2 : 0] + color[1], 0) << instance.name;
+  }
+  EXPECT_NEAR(volume_of(surfaces), (8 + 64) * std::pow(crane.scale, 3), 1e-4) << "outside out";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Formats, ForeignCrane,
+    testing::Values(Crane{"3ds", z_to_y}, Crane{"ac", as_is}, Crane{"amf", as_is, Axis::y, {}, 1, "0", "1"},
+                    Crane{"dae", z_to_y, Axis::y, 1, 0.0254},  // assimp numbers the colours of DXF in its own way.
+                    Crane{"dxf", z_to_y, Axis::y, {}, 1, "base", "jib", false}, Crane{"fbx", as_is, Axis::z, 0.0254},
+                    Crane{"lwo", z_back}, Crane{"x", z_back}, Crane{"x3d", as_is}),
+    [](const auto& crane) { return std::string(crane.param.suffix); });
+
+TEST(Import, TurnedObjectsOfAmfAreAWarning) {
+  const Importer importer(FRONTMOST_IMPORT_BUILT);
+  const ScratchFolder folder;
+  std::string text = read_text(FRONTMOST_MESHES "/crane.amf");
+  text.insert(text.find("</instance>"), "<rz>90</rz>");
+  write_text(folder.file("crane.amf"), text);
+  EXPECT_THAT(load(folder.file("crane.amf")).warnings,
+              testing::ElementsAre(HasSubstr("objects that the file turns stand at wrong places")));
+}
+
 #endif
 
 #ifdef FRONTMOST_MAKE_PARTS
@@ -148,15 +226,6 @@ class CadFiles : public testing::Test {
   static inline ScratchFolder* folder_ = nullptr;
   Importer importer_{FRONTMOST_IMPORT_BUILT};
 };
-
-double volume_of(const Surfaces& surfaces) {
-  double six_times = 0;
-  for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
-    const auto t = surfaces.corners(id);
-    six_times += glm::dot(glm::dvec3(t[0]), glm::cross(glm::dvec3(t[1]), glm::dvec3(t[2])));
-  }
-  return six_times / 6;
-}
 
 double area_of(const Surfaces& surfaces) {
   double area = 0;

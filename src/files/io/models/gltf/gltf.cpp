@@ -108,6 +108,7 @@ constexpr std::string_view supported_extensions[] = {
     "KHR_materials_transmission",
     "KHR_materials_volume",
     "KHR_materials_pbrSpecularGlossiness",
+    "FB_ngon_encoding",  // which triangles were polygons: assimp writes it, and nothing that is drawn depends on it
     "FRONTMOST_edges",
 };
 
