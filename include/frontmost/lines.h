@@ -186,10 +186,10 @@ struct Strokes {
 };
 
 /// Joins parts of one class (seen or hidden, outline, kind, instance) into strokes wherever exactly two of them meet,
-/// and, without `nearest_first`, where more meet and two go on within 15 degrees. Every line is drawn once: of
-/// coinciding parts, such as edges behind each other in parallel projection, one is kept, and a seen part is preferred
-/// to a hidden one. Edges that are seen as points are left out. Near-linear in the parts; more if thousands crowd
-/// within a pixel. \throws Error bad_argument for tolerances out of range.
+/// and, without `nearest_first`, where three to eight meet and two go on within 15 degrees. Every line is drawn once:
+/// of coinciding parts, such as edges behind each other in parallel projection, one is kept, and a seen part is
+/// preferred to a hidden one. Edges that are seen as points are left out. Near-linear in the parts; more if thousands
+/// crowd within a pixel. \throws Error bad_argument for tolerances out of range.
 [[nodiscard]] Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const StrokeOptions& options = {},
                                     const Execution& execution = {});
 

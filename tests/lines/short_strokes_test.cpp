@@ -2,6 +2,7 @@
 // Strokes too short for the pen to travel to: some are left out, and some must stay.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "frontmost/lines.h"
@@ -114,6 +115,16 @@ TEST(Strokes, GoOnThroughJunctions) {
   EXPECT_EQ(count({{10, 50}, {90, 58}, {90, 52}}), 2u) << "the straighter one";
   EXPECT_EQ(count({{10, 50}, {90, 62}, {50, 90}}), 3u) << "17 degrees";
   EXPECT_EQ(count({{50, 10}, {85, 70}, {15, 70}}), 3u) << "the corner of a cube";
+  std::vector<glm::dvec2> star;
+  for (int i = 0; i < 8; ++i) star.emplace_back(50 + 40 * std::cos(i * 0.7854), 50 + 40 * std::sin(i * 0.7854));
+  EXPECT_EQ(count(star), 4u);
+  star.emplace_back(60, 95);
+  EXPECT_EQ(count(star), 9u) << "more than eight ends";
+  // A line of another class at the same place is no part of the junction.
+  Sketch mixed;
+  mixed.add(EdgeKind::crease, {{10, 50}, {50, 50}}).add(EdgeKind::crease, {{50, 50}, {90, 50}});
+  mixed.add(EdgeKind::crease, {{50, 50}, {50, 90}}, true);
+  EXPECT_EQ(mixed.strokes(0).strokes.size(), 2u);
 }
 
 TEST(ShortStrokes, OfOneKindLinkOthers) {

@@ -27,8 +27,8 @@ struct SegmentEnd {
   friend auto operator<=>(const SegmentEnd&, const SegmentEnd&) = default;
 };
 
-constexpr double straight_on = 0.9659;  // the cosine of 15 degrees
-constexpr std::size_t most_at_junction = 8;
+constexpr double straight_on = 0.9659;       // the cosine of 15 degrees
+constexpr std::size_t most_at_junction = 8;  // bounds the search, which is cubic
 
 /// Pairs the ends of a junction whose lines go on nearly straight, the straightest pairs first.
 void pair_straight(const std::vector<LineSegment>& segments, std::span<const SegmentEnd> ends,

@@ -50,8 +50,8 @@ inline double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y
 /// Ends that are rounded to the same multiple of 1 / places_per_pixel pixels count as one place.
 inline constexpr double places_per_pixel = 1000;
 
-/// Joins segments of one rank wherever exactly two ends meet and, with `through_junctions`, where more meet, those that
-/// go on within 15 degrees, the straightest first. Chains are sorted by rank, then by their first segment.
+/// Joins segments of one rank wherever exactly two ends meet and, with `through_junctions`, where three to eight meet,
+/// those that go on within 15 degrees, the straightest first. Chains are sorted by rank, then by their first segment.
 [[nodiscard]] std::vector<Chain> chained(const std::vector<LineSegment>& segments, bool through_junctions);
 
 /// Calls visit(ends, is_closed) for each chain of edges: first the open ones, then those that are closed. The ends of

@@ -271,6 +271,7 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
   const IeeeScope ieee;
   report_progress(execution, "strokes", 0);
   const Ranked parts(surfaces, drawing, options);
+  // Straight pairs would leave more strokes than joined_ends(), which pairs the ends of all chains for plotters.
   std::vector<Chain> chains = chained(draw_once(parts.segments, options.apart, execution), !options.nearest_first);
   // Where two tessellations of one circle pass through each other, chains are left over that are seen as points.
   std::erase_if(chains, [&](const Chain& chain) {
