@@ -76,24 +76,41 @@ int line_weight(double width) {
                            [&](int a, int b) { return std::abs(a - wanted) < std::abs(b - wanted); });
 }
 
+/// The code of a sign that all fonts of CAD programs have; empty for other characters.
+std::string_view sign_code(char32_t character) {
+  return character == U'\u2300' ? "%%c" : character == U'\u00B0' ? "%%d" : character == U'\u00B1' ? "%%p" : "";
+}
+
+/// Whether readers could take a character as the beginning or end of a code: % before %%p, as %%% is a per cent sign,
+/// and in a dimension <>, which stands for its measurement, and braces, which group formatted text.
+bool is_ambiguous(char32_t character, char32_t next, bool is_of_dimension) {
+  switch (character) {
+    case U'\\':
+    case U'^': return true;
+    case U'%': return !sign_code(next).empty();
+    case U'{':
+    case U'}': return is_of_dimension;
+    case U'<': return is_of_dimension && next == U'>';
+    default: return false;
+  }
+}
+
 /// A text in the file's code page, which is that of Windows for Western Europe, as in files of AutoCAD: \U+2264 for
-/// other characters, and codes for the signs that all fonts of CAD programs have.
-std::string coded_text(std::string_view text) {
+/// other characters and ambiguous ones, and codes for signs.
+std::string coded_text(std::string_view text, bool is_of_dimension = false) {
   std::string coded;
   const std::string shown = printable_text(text);
   for (std::string_view rest = shown; !rest.empty();) {
     const char32_t code = take_character(rest);
-    if (code == U'\u2300') {
-      coded += "%%c";
-    } else if (code == U'\u00B0') {
-      coded += "%%d";
-    } else if (code == U'\u00B1') {
-      coded += "%%p";
-    } else if (code == U'%' && rest.starts_with('%')) {
+    std::string_view after = rest;
+    const char32_t next = rest.empty() ? U'\0' : take_character(after);
+    if (const std::string_view sign = sign_code(code); !sign.empty()) {
+      coded += sign;
+    } else if (code == U'%' && next == U'%') {
       coded += "%%%";
-    } else if ((code < 0x80 && code != U'\\' && code != U'^') || (code >= 0xA0 && code < 0x100)) {
+    } else if (!is_ambiguous(code, next, is_of_dimension) && (code < 0x80 || (code >= 0xA0 && code < 0x100))) {
       coded += char(code);
-    } else {  // also \ and ^, which begin other codes
+    } else {
       coded += "\\U+";
       append_hex(code < 0x10000 ? code : U'\u25A1', coded);
     }
@@ -489,6 +506,8 @@ class DxfWriter {
   /// Alignments other than to the left have a second point, the place of the text. Vertically, all places are on the
   /// base line, which programs agree about.
   void write_text(const PlacedText& placed) {
+    progress_.step();
+    if (placed.text.empty()) return;
     const TextStyle& style = placed.style;
     entity("TEXT", "AcDbText", line_weight(text_pen(style.height).width));
     point(begin_of(placed));
@@ -517,8 +536,9 @@ class DxfWriter {
     constexpr int own_block = 32, text_is_placed = 128;
     integer(70, (is_linear ? 0 : kind == DimensionKind::diameter ? 3 : 4) + own_block + text_is_placed);
     integer(71, 5);  // the point of the text is its middle
-    text(1, coded_text(placed.text));
-    number(42, length * factor, 6);
+    // Readers show the measurement in place of an empty text.
+    text(1, placed.text.empty() ? " " : coded_text(placed.text, true));
+    text(42, general_text(length * factor, 12));
     text(3, dimension_styles_.at(general_text(factor, 9)));
     if (is_linear) {
       text(100, "AcDbAlignedDimension");

@@ -74,6 +74,12 @@ std::vector<std::string> kinds_of(const std::vector<Codes>& entities) {
   return kinds;
 }
 
+/// A page with only this text, at (10, 10).
+Page page_of_text(const std::string& text, const TextStyle& style = {}) {
+  return {100, 50, "", {{"8 frame", {{.name = "notes", .pen = {0.35, {}}, .texts = {{text, {10, 10}, style}}}}}}};
+}
+
+// Letters of fonts have blank space of about a tenth of their height at both sides.
 TEST(Texts, AreElementsOfSvgAsWideAsTheirStrokes) {
   const std::string svg = saved(page_of_texts(), PageFormat::svg);
   EXPECT_THAT(svg, HasSubstr("<text x=\"10\" y=\"20\" font-family=\"Arial, Helvetica, sans-serif\" font-size=\"7\" "
@@ -124,14 +130,15 @@ TEST(Texts, OfDxfAreEntitiesOnTheirBaseLine) {
 
 TEST(Texts, OfDxfAreInItsCodePage) {
   const auto written = [](const std::string& text) {
-    Page page = page_of_texts();
-    page.layers[0].groups[0].texts = {{text, {10, 10}, {}}};
-    return value(entities_after(saved(page, PageFormat::dxf), "ENTITIES").at(0), 1);
+    return value(entities_after(saved(page_of_text(text), PageFormat::dxf), "ENTITIES").at(0), 1);
   };
   EXPECT_EQ(written("\u00b10.1 at 20\u00b0"), "%%p0.1 at 20%%d");
   EXPECT_EQ(written("\u00e9\u2264"), "\xE9\\U+2264");
   EXPECT_EQ(written("50 %"), "50 %");
   EXPECT_EQ(written("%%d"), "%%%%d");  // %%% is a per cent sign
+  EXPECT_EQ(written("10%\u00b12%"), "10\\U+0025%%p2%");
+  EXPECT_EQ(written("%%\u2300%\u00b0"), "%%%\\U+0025%%c\\U+0025%%d");
+  EXPECT_EQ(written("{<>}"), "{<>}");
   EXPECT_EQ(written("C:\\P^J"), "C:\\U+005CP\\U+005EJ");
   EXPECT_EQ(written("\u6f22\U0001f600"), "\\U+6F22\\U+25A1");
   EXPECT_EQ(written("a\nb").find('\n'), std::string::npos);
@@ -223,23 +230,53 @@ TEST(PageDimensions, AreEntitiesThatShowTheBlockOfTheirLines) {
 TEST(PageDimensions, OfEachKindHaveTheirPoints) {
   Page page = page_of_a_dimension();
   PageGroup& group = page.layers[0].groups[0];
-  group.dimensions.assign(3, group.dimensions[0]);
+  group.texts.resize(3);
+  group.dimensions.assign(3, {DimensionKind::linear, {10, 29}, {50, 19}, {50, 40}, 0, 2});
+  for (std::uint32_t i = 0; i < 3; ++i) group.dimensions[i].text = i;
   group.dimensions[0].angle = upright;
   group.dimensions[1].kind = DimensionKind::diameter;
   group.dimensions[2].kind = DimensionKind::radius;
   const std::string dxf = saved(page, PageFormat::dxf);
-  const std::vector<Codes> all = entities_after(dxf, "ENTITIES");
-  ASSERT_EQ(all.size(), 5u);
-  EXPECT_EQ(number(all[2], 50), 90);
-  EXPECT_EQ(number(all[2], 42), 20);  // 10 mm upwards
-  EXPECT_EQ(number(all[2], 10), 50);  // the line is upright, and ends at the height of the second point
-  EXPECT_EQ(number(all[2], 20), 31);
-  EXPECT_EQ(number(all[3], 70), 3 + 32 + 128);
-  EXPECT_NEAR(number(all[3], 42), 2 * std::hypot(40, 10), 1e-5);
-  EXPECT_EQ(number(all[4], 70), 4 + 32 + 128);
-  EXPECT_EQ(number(all[4], 15), 50);
-  EXPECT_EQ(number(all[4], 40), 21);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(value(all[i + 2], 2), "*D" + std::to_string(i + 1));
+  std::vector<Codes> all = entities_after(dxf, "ENTITIES");
+  ASSERT_EQ(all.size(), 7u);
+  all.erase(all.begin(), all.begin() + 4);  // lines
+  EXPECT_EQ(number(all[0], 50), 90);
+  EXPECT_EQ(number(all[0], 42), 20);  // 10 mm upwards
+  EXPECT_EQ(number(all[0], 10), 50);  // the line is upright, and ends at the height of the second point
+  EXPECT_EQ(number(all[0], 20), 31);
+  EXPECT_EQ(number(all[1], 70), 3 + 32 + 128);
+  EXPECT_NEAR(number(all[1], 42), 2 * std::hypot(40, 10), 1e-9);
+  EXPECT_EQ(number(all[2], 70), 4 + 32 + 128);
+  EXPECT_EQ(number(all[2], 15), 50);
+  EXPECT_EQ(number(all[2], 40), 21);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(value(all[i], 2), "*D" + std::to_string(i + 1));
+}
+
+TEST(PageDimensions, HaveMeasurementsOfEveryFactor) {
+  for (const double factor : {1e15, 1.0 / 3, 1e-15}) {
+    Page page = page_of_a_dimension();
+    page.layers[0].groups[0].dimensions[0].factor = factor;
+    const std::vector<Codes> all = entities_after(saved(page, PageFormat::dxf), "ENTITIES");
+    EXPECT_NEAR(number(all.at(2), 42), 40 * factor, 1e-10 * factor);
+  }
+}
+
+// The text of a dimension is formatted text, in which "<>", and no text at all, are the measurement.
+TEST(PageDimensions, HaveTextsThatAreNoCodes) {
+  const auto written = [](const std::string& text) {
+    Page page = page_of_a_dimension();
+    page.layers[0].groups[0].texts[1].text = text;
+    return saved(page, PageFormat::dxf);
+  };
+  const auto shown = [&](const std::string& text) { return value(entities_after(written(text), "ENTITIES").at(2), 1); };
+  EXPECT_EQ(shown("<>"), "\\U+003C>");
+  EXPECT_EQ(shown("1 < 2 > 1"), "1 < 2 > 1");
+  EXPECT_EQ(shown("{5}"), "\\U+007B5\\U+007D");
+  EXPECT_EQ(shown("\\P%\u00b1"), "\\U+005CP\\U+0025%%p");
+  EXPECT_EQ(shown(""), " ");
+  // The block of the dimension has no text then.
+  EXPECT_THAT(kinds_of(entities_after(written("").substr(written("").find("\n*D1\n70\n1\n10\n")), "1")),
+              ElementsAre("LINE", "LINE", "LINE"));
 }
 
 // LibreCAD shows no ordinate dimensions, so their lines and texts are entities of the drawing.
