@@ -89,7 +89,8 @@ PdfLetters letters_of(std::span<const Page> pages) {
           for (std::string_view rest = text.text; !rest.empty();) {
             const std::string_view before = rest;
             const char32_t code = take_character(rest);
-            letters[code].utf8 = before.substr(0, before.size() - rest.size());
+            // Invalid bytes and U+FFFD are one letter.
+            letters[code].utf8 = code == U'\uFFFD' ? "\uFFFD" : before.substr(0, before.size() - rest.size());
           }
   std::size_t number = 0;
   for (auto& [code, letter] : letters) letter.number = number++;
@@ -178,11 +179,13 @@ class PdfContent {
     if (points > 0) out_ << "S\n";
     if (group.texts.empty() || group.pen.color.opacity == 0) return;
     set({group.pen.color, group.pen.color});  // viewers disagree which of the two glyphs inherit
-    if (!group.pen.dashes.empty()) out_ << "[] 0 d\n";
+    // Glyphs inherit the dashes of this group or, if it draws no lines, of an earlier one.
+    if (group.pen.width == 0 || !group.pen.dashes.empty()) out_ << "[] 0 d\n";
     for (const PlacedText& text : group.texts) write_text(text);
   }
 
   void write_text(const PlacedText& text) {
+    progress_.step();
     if (text.text.empty()) return;
     const glm::dvec2 along(std::cos(text.style.angle), -std::sin(text.style.angle));
     out_ << "BT ";
@@ -390,6 +393,7 @@ class PdfWriter {
       if (paint.fill) states.fills[paint.fill->opacity] = true;
       if (paint.line) states.lines[paint.line->opacity] = true;
     }
+    if (!group.texts.empty()) states.fills[group.pen.color.opacity] = states.lines[group.pen.color.opacity] = true;
     begin(form.object) << "<< /Type /XObject /Subtype /Form /BBox [";
     for (const double side :
          {low.x - group.pen.width, low.y - group.pen.width, high.x + group.pen.width, high.y + group.pen.width})

@@ -16,6 +16,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 constexpr double upright = std::numbers::pi / 2;
 
@@ -167,6 +168,44 @@ TEST(Texts, OfPdfAreInGroupsWithAnOpacityToo) {
   EXPECT_THAT(form.substr(0, form.find('\n')), HasSubstr("/BBox [-.35 -.35 100.35 50.35 ]"));
   EXPECT_THAT(form.substr(0, form.find("stream")), HasSubstr("/Font << /T0 "));
   EXPECT_THAT(operators_of(form), HasSubstr("Tm /T0 5 Tf <"));
+}
+
+TEST(Texts, OfPdfHaveTheOpacitiesOfTheirPenInGroupsWithAnOpacity) {
+  Page page = page_of_texts();
+  PageGroup& group = page.layers[0].groups[0];
+  group.opacity = 200;
+  group.pen.color.opacity = 128;
+  const auto check = [&page] {
+    const std::string pdf = saved(page, PageFormat::pdf), form = pdf.substr(pdf.find("/Subtype /Form"));
+    EXPECT_THAT(operators_of(form), HasSubstr("/F128 gs\n/S128 gs\n"));
+    EXPECT_THAT(form.substr(0, form.find("stream")),
+                HasSubstr("/ExtGState << /F128 << /ca .502 >> /S128 << /CA .502 >> >>"));
+  };
+  check();
+  group.add(std::vector<glm::dvec2>{{1, 1}, {2, 1}}, false);
+  group.pen.width = 0;
+  check();
+}
+
+// The dashes of an earlier group would stay, also within a form.
+TEST(Texts, OfPdfAreSolidAfterDashes) {
+  for (const int opacity : {255, 128}) {
+    Page page = page_of_text("A");
+    PageGroup dashed{"axle", {0.25, {}, {3, 0.75}}}, &letters = page.layers[0].groups[0];
+    dashed.add(std::vector<glm::dvec2>{{1, 1}, {20, 1}}, false);
+    letters.pen.width = 0;
+    letters.opacity = std::uint8_t(opacity);
+    page.layers[0].groups.insert(page.layers[0].groups.begin(), dashed);
+    const std::string pdf = saved(page, PageFormat::pdf), form = pdf.substr(pdf.find("/Subtype /Form") + 1);
+    const std::string operators = operators_of(opacity < 255 ? form : pdf);
+    EXPECT_THAT(operators.substr(operators.rfind("d\n", operators.find("BT")) - 5), StartsWith("[] 0 d\n")) << opacity;
+  }
+}
+
+// They are one letter, whichever comes last.
+TEST(Texts, OfPdfCopyInvalidBytesAsReplacementCharacters) {
+  for (const char* const text : {"\uFFFD\xff", "\xff\uFFFD", "\xe9"})
+    EXPECT_THAT(saved(page_of_text(text), PageFormat::pdf), HasSubstr("[ <FFFD> ]"));
 }
 
 TEST(Texts, OfPdfHaveAsManyFontsAsTheirCharactersNeed) {
