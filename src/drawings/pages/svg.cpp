@@ -108,24 +108,33 @@ class SvgWriter {
     out_ << "\"/>\n";
   }
 
-  /// Viewers stretch the text to the width of its strokes, whatever their font.
-  void write_text(const PlacedText& text, const PageColor& of) {
+  /// Viewers stretch texts of several characters to the width of their strokes, whatever their font.
+  void write_text(const PlacedText& text, const PageColor& ink) {
+    progress_.step();
+    if (text.text.empty()) return;
     constexpr double font_size = 1.4;  // of Arial and Helvetica, for capitals of height 1
+    constexpr double bearing = 0.1;    // blank space on either side of a letter, which textLength includes
     constexpr const char* anchors[] = {"start", "middle", "end"};
-    const glm::dvec2 at = base_of(text);
+    const double height = text.style.height, angle = text.style.angle;
+    const double beyond = (2 * share_before(text.style.align) - 1) * bearing * height;
+    const glm::dvec2 at = base_of(text) + beyond * glm::dvec2(std::cos(angle), -std::sin(angle));
     out_ << "<text x=\"";
     millimetres(at.x) << "\" y=\"";
     millimetres(at.y) << "\" font-family=\"Arial, Helvetica, sans-serif\" font-size=\"";
-    millimetres(font_size * text.style.height)
-        << "\" text-anchor=\"" << anchors[int(text.style.align)] << "\" textLength=\"";
-    millimetres(text_width(text.text, text.style.height)) << "\" lengthAdjust=\"spacingAndGlyphs\"";
-    if (text.style.angle != 0) {
+    millimetres(font_size * height) << "\" text-anchor=\"" << anchors[int(text.style.align)] << '"';
+    std::string_view rest = text.text;
+    (void)take_character(rest);
+    if (!rest.empty()) {
+      out_ << " textLength=\"";
+      millimetres(text_width(text.text, height) + 2 * bearing * height) << "\" lengthAdjust=\"spacingAndGlyphs\"";
+    }
+    if (angle != 0) {
       out_ << " transform=\"rotate(";
-      millimetres(glm::degrees(-text.style.angle)) << ' ';
+      millimetres(glm::degrees(-angle)) << ' ';
       millimetres(at.x) << ' ';
       millimetres(at.y) << ")\"";
     }
-    color("fill", of);
+    color("fill", ink);
     out_ << " stroke=\"none\" xml:space=\"preserve\">" << xml_text(text.text) << "</text>\n";
   }
 

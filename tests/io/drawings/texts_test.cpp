@@ -15,6 +15,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
@@ -83,14 +84,27 @@ Page page_of_text(const std::string& text, const TextStyle& style = {}) {
 // Letters of fonts have blank space of about a tenth of their height at both sides.
 TEST(Texts, AreElementsOfSvgAsWideAsTheirStrokes) {
   const std::string svg = saved(page_of_texts(), PageFormat::svg);
-  EXPECT_THAT(svg, HasSubstr("<text x=\"10\" y=\"20\" font-family=\"Arial, Helvetica, sans-serif\" font-size=\"7\" "
-                             "text-anchor=\"start\" textLength=\"16.2\""));
+  EXPECT_THAT(svg, HasSubstr("<text x=\"9.5\" y=\"20\" font-family=\"Arial, Helvetica, sans-serif\" font-size=\"7\" "
+                             "text-anchor=\"start\" textLength=\"17.2\""));
   EXPECT_THAT(svg, HasSubstr(">A &amp; B</text>"));
   // The base line is half a height below the middle.
   EXPECT_THAT(svg, HasSubstr("<text x=\"50\" y=\"21.75\""));
   EXPECT_THAT(svg, HasSubstr("text-anchor=\"middle\""));
-  EXPECT_THAT(svg, HasSubstr("transform=\"rotate(-90 90 40)\" fill=\"#000000\" stroke=\"none\""));
+  EXPECT_THAT(svg, HasSubstr("transform=\"rotate(-90 90 39.65)\" fill=\"#000000\" stroke=\"none\""));
   EXPECT_THAT(saved(page_of_strokes(), PageFormat::svg), Not(HasSubstr("<text")));
+}
+
+// The strokes of narrow letters are much narrower than the letters of fonts.
+TEST(Texts, OfOneCharacterHaveTheWidthOfTheirFontInSvg) {
+  EXPECT_THAT(saved(page_of_text("I"), PageFormat::svg), Not(HasSubstr("textLength")));
+  EXPECT_THAT(saved(page_of_text("\u2300"), PageFormat::svg), Not(HasSubstr("textLength")));
+  EXPECT_THAT(saved(page_of_text("II"), PageFormat::svg), HasSubstr("textLength=\"2.1\""));
+}
+
+TEST(Texts, WithoutCharactersAreNoElements) {
+  EXPECT_THAT(saved(page_of_text(""), PageFormat::svg), Not(HasSubstr("<text")));
+  EXPECT_THAT(entities_after(saved(page_of_text(""), PageFormat::dxf), "ENTITIES"), IsEmpty());
+  EXPECT_THAT(operators_of(saved(page_of_text(""), PageFormat::pdf)), Not(HasSubstr("BT")));
 }
 
 TEST(Texts, OfJsonAreThePages) {
