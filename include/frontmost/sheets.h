@@ -146,6 +146,7 @@ struct PlacedText {
 enum class DimensionKind : std::uint8_t { linear, position, diameter, radius };
 
 /// A dimension of a drawing, for CAD programs: what it measures, and the paths and the text of its group that show it.
+/// Two dimensions share no path and no text.
 struct PageDimension {
   DimensionKind kind = DimensionKind::linear;
   glm::dvec2 from{0}, to{0};  ///< measured points; opposite points of a circle; centre and point of an arc
@@ -202,8 +203,8 @@ struct Page {
 enum class PageFormat : std::uint8_t { svg, pdf, dxf, json };
 
 /// \throws Error bad_argument or limit_exceeded, naming layer and group: sizes out of range; points that are not finite
-/// or more than 1000 m away; bulges beyond 10; paths of missing points; dimensions of missing paths or texts; lists of
-/// different lengths.
+/// or more than 1000 m away; bulges beyond 10; paths of missing points; dimensions of paths or texts that are missing,
+/// or that two dimensions share; lists of different lengths.
 void validate(const Page& page);
 
 /// The page format that a file's suffix names; none for other suffixes.

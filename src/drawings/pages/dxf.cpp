@@ -171,7 +171,6 @@ class DxfWriter {
         if (!is_entity(dimension)) continue;
         const std::string factor = general_text(dimension.factor, 9);
         ++dimension_count_;
-        entity_count_ += dimension.path_count + 1;  // several dimensions may share lines
         dimension_styles_.try_emplace(factor, "FRONTMOST_" + std::to_string(dimension_styles_.size() + 1));
       }
     });
@@ -227,7 +226,7 @@ class DxfWriter {
     text(1, "AC1015");
     text(9, "$DWGCODEPAGE");
     text(3, "ANSI_1252");
-    // No handle of the file is as large. A dimension is up to five entities more than its lines and its text.
+    // No handle of the file is as large. A dimension has up to five handles beside those of its lines and its text.
     text(9, "$HANDSEED");
     handle(5, 0x1000 + layers_.size() + entity_count_ + 5 * dimension_count_);
     text(9, "$INSUNITS");
@@ -464,10 +463,8 @@ class DxfWriter {
       std::fill_n(has_path.begin() + dimension.first_path, dimension.path_count, true);
       has_text[dimension.text] = true;
     }
-    for (std::size_t i = 0; i < group.paths.size(); ++i) {
-      progress_.step();
+    for (std::size_t i = 0; i < group.paths.size(); ++i)
       if (!has_path[i]) write_path(group, group.paths[i]);
-    }
     for (std::size_t i = 0; i < group.texts.size(); ++i)
       if (!has_text[i]) write_text(group.texts[i]);
     for (const PageDimension& dimension : group.dimensions)
@@ -488,6 +485,7 @@ class DxfWriter {
   }
 
   void write_path(const PageGroup& group, const PagePath& path) {
+    progress_.step();
     if (group.pen.width == 0) return;
     if (path.count == 1) {
       entity("POINT", "AcDbPoint", weight_);

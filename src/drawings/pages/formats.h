@@ -124,7 +124,7 @@ void save_pdf(std::span<const Page> pages, OutputFile& file, const Execution& ex
 void save_dxf(const Page& page, OutputFile& file, const Execution& execution);
 void save_json(const Page& page, OutputFile& file, const Execution& execution);
 
-/// Reports the progress of writing, path by path.
+/// Reports the progress of writing, path by path and text by text.
 class WritingProgress {
  public:
   WritingProgress(std::span<const Page> pages, const Execution& execution) : execution_(execution) {
@@ -135,13 +135,13 @@ class WritingProgress {
   }
   /// Counts one path. \throws Error cancelled.
   void step() {
-    if (++done_ % paths_between != 0) return;
+    if (++done_ % steps_between != 0) return;
     check_cancelled(execution_);
     report_progress(execution_, "write", double(done_) / double(count_));
   }
 
  private:
-  static constexpr std::size_t paths_between = 4096;
+  static constexpr std::size_t steps_between = 4096;
   const Execution& execution_;
   std::size_t done_ = 0, count_ = 0;
 };

@@ -116,7 +116,10 @@ void save_json(const Page& page, OutputFile& file, const Execution& execution) {
         write_path(out, group, i);
       }
       out << "]";
-      write_list(out, "texts", group.texts, write_text);
+      write_list(out, "texts", group.texts, [&progress](PageText& to, const PlacedText& text) {
+        progress.step();
+        write_text(to, text);
+      });
       write_list(out, "dimensions", group.dimensions, write_dimension);
       out << "}";
     }

@@ -52,6 +52,12 @@ void check_group(const PageGroup& group, const std::string& where) {
           std::abs(text.style.angle) <= most_angle))
       refuse(where, "a text's height must be from 0.01 to 1000 mm, its angle at most 1000 radians");
   }
+  std::vector<bool> is_path_taken(group.dimensions.empty() ? 0 : group.paths.size());
+  std::vector<bool> is_text_taken(group.dimensions.empty() ? 0 : group.texts.size());
+  const auto take = [&where](std::vector<bool>& is_taken, std::size_t i) {
+    if (is_taken[i]) refuse(where, "two dimensions share a path or a text");
+    is_taken[i] = true;
+  };
   for (const PageDimension& dimension : group.dimensions) {
     for (const glm::dvec2& p : {dimension.from, dimension.to, dimension.line}) check_place(p, where);
     if (!(std::abs(dimension.angle) <= most_angle && dimension.factor >= 1e-15 && dimension.factor <= 1e15))
@@ -59,6 +65,8 @@ void check_group(const PageGroup& group, const std::string& where) {
     if (dimension.first_path > group.paths.size() || dimension.path_count > group.paths.size() - dimension.first_path ||
         dimension.text >= group.texts.size())
       refuse(where, "a dimension has paths or a text beyond the last one of its group");
+    for (std::size_t i = 0; i < dimension.path_count; ++i) take(is_path_taken, dimension.first_path + i);
+    take(is_text_taken, dimension.text);
   }
 }
 

@@ -256,6 +256,31 @@ TEST(Texts, BelongToTheDataThatEveryFunctionOfPagesKnows) {
   refused([](PageGroup& g) { g.dimensions[0].text = 2; });
   refused([](PageGroup& g) { g.dimensions[0].path_count = 4; });
   refused([](PageGroup& g) { g.dimensions[0].first_path = 5; });
+  // A second dimension needs paths and a text of its own.
+  const auto add_second = [](PageGroup& g, std::uint32_t path_count, std::uint32_t text) {
+    g.dimensions.push_back(g.dimensions[0]);
+    g.dimensions[1].first_path = 0;
+    g.dimensions[1].path_count = path_count;
+    g.dimensions[1].text = text;
+  };
+  refused([&](PageGroup& g) { add_second(g, 2, 0); });
+  refused([&](PageGroup& g) { add_second(g, 1, 1); });
+  Page two = page_of_a_dimension();
+  add_second(two.layers[0].groups[0], 1, 0);
+  EXPECT_NO_THROW(validate(two));
+}
+
+// Progress is reported, and cancelling noticed, after 4096 steps.
+TEST(Texts, AreStepsOfProgress) {
+  Page page = page_of_text("A");
+  page.layers[0].groups[0].texts.resize(5000, page.layers[0].groups[0].texts[0]);
+  for (const PageFormat format : {PageFormat::svg, PageFormat::pdf, PageFormat::dxf, PageFormat::json}) {
+    double last = 0;
+    Watch watch;
+    watch.progress = [&last](std::string_view, double share) { last = share; };
+    (void)saved(page, format, {.watch = &watch});
+    EXPECT_DOUBLE_EQ(last, 4096.0 / 5000) << int(format);
+  }
 }
 
 TEST(PageDimensions, AreEntitiesThatShowTheBlockOfTheirLines) {
