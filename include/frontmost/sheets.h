@@ -142,7 +142,8 @@ struct PlacedText {
   TextStyle style;   ///< height from 0.01 to 1000 mm
 };
 
-/// linear: the distance of two points along a direction. position: the same, from an origin that several share.
+/// linear: distance between two points along a direction. position: distance from an origin that several dimensions
+/// share.
 enum class DimensionKind : std::uint8_t { linear, position, diameter, radius };
 
 /// A dimension of a drawing, for CAD programs: what it measures, and the paths and the text of its group that show it.

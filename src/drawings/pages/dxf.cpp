@@ -60,9 +60,9 @@ int layer_color(const std::string& page_layer, const PageColor& color) {
     if (const int distance = r * r + g * g + b * b; distance < least) nearest = number, least = distance;
   }
   // From 1: hidden, visible, outline, hatching, stippling, centre lines, dimensions, frame, sections.
-  constexpr int of_classes[] = {7, 6, 7, 5, 8, 9, 1, 3, 4, 3};
+  constexpr int class_colors[] = {7, 6, 7, 5, 8, 9, 1, 3, 4, 3};
   const bool is_numbered = !page_layer.empty() && page_layer[0] >= '0' && page_layer[0] <= '9';
-  return nearest == 7 && is_numbered ? of_classes[page_layer[0] - '0'] : nearest;
+  return nearest == 7 && is_numbered ? class_colors[page_layer[0] - '0'] : nearest;
 }
 
 constexpr int by_layer = 256;
@@ -143,7 +143,7 @@ class DxfWriter {
     std::set<std::string> names = {"0"};  // every drawing has this layer
     std::map<std::string, int> next;
     for (const PageLayer& layer : page.layers) {
-      const std::string of_class = table_text(layer.name);
+      const std::string class_name = table_text(layer.name);
       layers_of_groups_.emplace_back();
       std::optional<std::size_t> common;
       const auto add = [&](const std::string& name, const Pen& pen) {
@@ -155,14 +155,14 @@ class DxfWriter {
         layers_.push_back({unique, pen, layer_color(layer.name, pen.color), line_weight(pen.width)});
         return layers_.size() - 1;
       };
-      if (layer.groups.empty()) add(of_class, {});
+      if (layer.groups.empty()) add(class_name, {});
       for (const PageGroup& group : layer.groups) {
         types_.try_emplace(type_name(group.pen), group.pen.dashes);
         const bool is_own = group_count <= most_layers && !group.name.empty();
-        if (!is_own && !common) common = add(of_class, group.pen);
+        if (!is_own && !common) common = add(class_name, group.pen);
         // On sheets, every class with named groups fits into 11 characters, so that programs can select all of a class.
         layers_of_groups_.back().push_back(
-            is_own ? add(of_class.substr(0, 11) + "-" + table_text(group.name), group.pen) : *common);
+            is_own ? add(class_name.substr(0, 11) + "-" + table_text(group.name), group.pen) : *common);
       }
     }
     for_each_group([&](const PageGroup& group) {
@@ -591,14 +591,15 @@ class DxfWriter {
   std::map<std::string, std::vector<double>> types_{{"CONTINUOUS", {}}};  ///< line types: the dashes of each name
   std::map<std::string, std::string> dimension_styles_;  ///< names by PageDimension::factor, nine digits of it
   std::size_t entity_count_ = 0, dimension_count_ = 0;
-  std::uint64_t next_ = first_free, table_ = 0,
-                owner_ = model_space;  ///< handles; of the next object, and current ones
+  std::uint64_t next_ = first_free;    ///< handle of the next object
+  std::uint64_t table_ = 0;            ///< handle of the table that is being written
+  std::uint64_t owner_ = model_space;  ///< handle of the block record that owns the entities being written
   std::uint64_t first_block_ = 0;      ///< handle of the first dimension's block record
-  const Layer* layer_ = nullptr;       ///< of the current group
+  const Layer* layer_ = nullptr;       ///< layer of the current group
   /// Properties of the current group where they differ from its layer; else empty or by_layer.
   std::string own_type_;
   int own_color_ = by_layer;
-  int weight_ = 0;  ///< of the current group
+  int weight_ = 0;  ///< line weight of the current group, hundredths of a millimetre
 };
 
 }  // namespace

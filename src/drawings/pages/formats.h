@@ -46,10 +46,14 @@ struct Join {
 /// The arc that a whole path forms, if all its joins run along one circle in one direction; none otherwise.
 [[nodiscard]] std::optional<Arc> whole_arc(const PageGroup& group, const PagePath& path);
 
+/// Where the point of a text lies between the lower edge of capitals, 0, and their upper edge, 1.
+[[nodiscard]] inline double share_below(TextLine line) {
+  return line == TextLine::bottom ? 0 : line == TextLine::middle ? 0.5 : 1;
+}
 /// The point of a text on its base line, at its beginning, its middle or its end by its alignment.
 [[nodiscard]] inline glm::dvec2 base_of(const PlacedText& text) {
-  const double below = text.style.line == TextLine::bottom ? 0 : text.style.line == TextLine::middle ? 0.5 : 1;
-  return text.at + below * text.style.height * glm::dvec2(std::sin(text.style.angle), std::cos(text.style.angle));
+  return text.at + share_below(text.style.line) * text.style.height *
+                       glm::dvec2(std::sin(text.style.angle), std::cos(text.style.angle));
 }
 
 /// Where the point of a text lies between the text's beginning, 0, and its end, 1.
@@ -130,10 +134,10 @@ class WritingProgress {
   WritingProgress(std::span<const Page> pages, const Execution& execution) : execution_(execution) {
     for (const Page& page : pages)
       for (const PageLayer& layer : page.layers)
-        for (const PageGroup& group : layer.groups) count_ += group.paths.size();
+        for (const PageGroup& group : layer.groups) count_ += group.paths.size() + group.texts.size();
     report_progress(execution, "write", 0);
   }
-  /// Counts one path. \throws Error cancelled.
+  /// Counts one path or text. \throws Error cancelled.
   void step() {
     if (++done_ % steps_between != 0) return;
     check_cancelled(execution_);

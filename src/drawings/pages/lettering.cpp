@@ -321,7 +321,7 @@ void add_text(PageGroup& group, std::string_view text, const glm::dvec2& at, con
     return;
   }
   const double before = detail::share_before(style.align);
-  const double below = style.line == TextLine::bottom ? 0 : style.line == TextLine::middle ? 0.5 : 1;
+  const double below = detail::share_below(style.line);
   const glm::dvec2 shift(edge - before * width_in_tenths(text), edge - below * capital);
   const glm::dvec2 along = glm::dvec2(std::cos(style.angle), -std::sin(style.angle)) * (style.height / capital);
   group.bulges.resize(group.points.size());
