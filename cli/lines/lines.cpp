@@ -62,7 +62,7 @@ Json lines_json(const Settings& settings, const Sheet& sheet, const Page& page, 
   json["arcs"] = all.arcs;
   json["drawn_mm"] = all.down;
   json["moved_mm"] = all.up;
-  if (all.texts > 0) json["texts"] = all.texts;
+  json["texts"] = all.texts;
   json["outputs"] = settings.drawing.outputs;
   json["timings_ms"] = {{"lines", times.milliseconds().at("views")},
                         {"rounds", times.milliseconds().at("rounds")},

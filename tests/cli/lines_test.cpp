@@ -209,7 +209,9 @@ TEST_F(LinesCommand, SheetsHaveDimensionsWhereTheyAreAskedFor) {
   succeed("lines " + sheet + "--dimensions diameters -o peg.dxf --plot");
   EXPECT_THAT(read("peg.dxf"), HasSubstr("7_DIMENSIONS"));
   expect_failure("lines peg.obj -o a.svg --dimensions diameters", 2, "--dimensions needs --views");
-  succeed("lines " + sheet + "--dimensions diameters --lettering text -o text.svg");
+  EXPECT_EQ(succeed("lines " + sheet + "--dimensions diameters -o text.svg --json").json()["texts"], 0);
+  EXPECT_EQ(succeed("lines " + sheet + "--dimensions diameters --lettering text -o text.svg --json").json()["texts"],
+            2);
   EXPECT_THAT(read("text.svg"), HasSubstr(">40</text>"));
   expect_failure("lines " + sheet + "--lettering text --plot -o a.svg", 2, "--lettering: plotters have no fonts");
   // One peg hides another.
