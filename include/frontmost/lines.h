@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -137,6 +138,8 @@ class LineDrawer {
 //   strokes   .-----------        .---            two lines, each drawn without a lift of the pen
 //             '-----              '-----
 
+struct Stroke;
+
 struct StrokeOptions {
   bool with_hidden = true;  ///< false: hidden parts are left out
   /// Radians, 0 to pi/2: hidden intersections are left out if their surfaces cross at a smaller angle. Where surfaces
@@ -160,9 +163,11 @@ struct StrokeOptions {
   bool nearest_first = false;
   /// Pixels, 0 to 100: with `nearest_first`, ends of two strokes that are at most this far apart meet.
   double joining = 0.01;
-  /// Pixels, 0 to 1000, half the width of a pen: a stroke is left out if each of its points is at most this far from
-  /// longer strokes of its class, or from strokes of a class that is drawn over it. 0: none is left out.
-  double covered_within = 0;
+  /// Pixels, 0 to 1000: how far ink reaches from strokes of the given class, half the width of their pen; 0 for dashed
+  /// strokes. A stroke is left out if its centre line lies in the ink of longer strokes of its class, or of strokes of
+  /// a class that is drawn over it, by a pen at least as wide. A stroke shorter than its own pen is wide is left out
+  /// only if both rims of its ink lie there, too, because it may close a gap. Empty: none is left out.
+  std::function<double(const Stroke&)> ink_reach{};
 };
 
 /// A line from point to point, drawn without lifting the pen.
@@ -182,7 +187,7 @@ struct Strokes {
   std::vector<double> bulges;
   /// Sorted: hidden strokes first; then by outline, kind and instance.
   std::vector<Stroke> strokes;
-  std::size_t covered = 0;  ///< number of strokes left out by StrokeOptions::covered_within
+  std::size_t covered = 0;  ///< number of strokes left out by StrokeOptions::ink_reach
 };
 
 /// Joins parts of one class (seen or hidden, outline, kind, instance) into strokes wherever exactly two of them meet,

@@ -10,6 +10,7 @@
 
 #include "frontmost/scene.h"
 #include "frontmost/sheets.h"
+#include "support/meshes.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -354,6 +355,41 @@ TEST_F(SheetOfBlock, AGivenViewHasNothingOfNamedOnes) {
       EXPECT_THAT(error.what(), StartsWith(reason));
     }
   }
+}
+
+/// An open surface 20 deep whose top is bent twice, along lines that are `apart` from each other. They bound a slope of
+/// 45 degrees. If `is_behind`, a plate lies over it.
+Scene bent_twice(float apart, bool is_behind) {
+  Mesh mesh;
+  const glm::vec2 profile[] = {{-10, 0}, {-apart / 2, 0}, {apart / 2, apart}, {10, apart}};
+  for (int i = 0; i < 3; ++i) {
+    const glm::vec2 a = profile[i], b = profile[i + 1];
+    add_quad(mesh, {a.x, 0, a.y}, {b.x, 0, b.y}, {b.x, 20, b.y}, {a.x, 20, a.y});
+  }
+  if (is_behind) add_quad(mesh, {-11, -1, 3}, {11, -1, 3}, {11, 21, 3}, {-11, 21, 3});
+  Scene scene = scene_of(mesh);
+  scene.up = Axis::z;
+  return scene;
+}
+
+TEST(Plots, InkReachesHalfTheWidthOfEachPen) {
+  const auto covered = [](float apart, bool is_behind, SheetOptions options) {
+    const Scene scene = bent_twice(apart, is_behind);
+    options.views = {V::top};
+    options.scale = 1;
+    options.plot = true;
+    return draw_sheet(Surfaces(scene), options).views[0].placed.strokes.covered;
+  };
+  // Creases of figures are 0.18 mm wide, all visible lines of technical drawings 0.5 mm.
+  const SheetOptions figure{.style = DrawingStyle::figure};
+  EXPECT_EQ(covered(0.15f, false, figure), 0u);
+  EXPECT_EQ(covered(0.08f, false, figure), 1u);
+  EXPECT_EQ(covered(0.15f, false, {}), 1u);
+  EXPECT_EQ(covered(0.3f, false, {}), 0u);
+  // Thin hidden lines are 0.13 mm wide. The gaps of dashed ones are paper.
+  EXPECT_EQ(covered(0.08f, true, {.hidden = HiddenLines::thin}), 0u);
+  EXPECT_EQ(covered(0.05f, true, {.hidden = HiddenLines::thin}), 1u);
+  EXPECT_EQ(covered(0.05f, true, {.hidden = HiddenLines::dashed}), 0u);
 }
 
 TEST(NamedPaper, HasItsSizeAndItsName) {

@@ -267,7 +267,7 @@ constexpr double stroke_tolerance = 0.0005;            // millimetres: half of t
 constexpr double shortest_hatch = 0.2;                 // millimetres: shorter hatch lines are dots of the pen
 constexpr double plotted_gap = 0.05;                   // millimetres: a plotter's pen draws across smaller gaps
 
-/// Millimetres, of edges.
+/// Shortest stroke of an edge, millimetres of paper.
 double shortest_stroke(const SheetOptions& options) {
   return options.shortest_stroke.value_or(options.plot ? plotted_stroke : 0);
 }
@@ -286,7 +286,10 @@ StrokeOptions stroke_options(const PlannedView& view, const SheetOptions& option
   strokes.arc_tolerance = std::min(paper_tolerance / millimetres, 100.0);
   if (!options.plot) return strokes;
   strokes.joining = std::min(plotted_gap / millimetres, 100.0);
-  strokes.covered_within = std::min(pens_of(options).seen.width / 2 / millimetres, 1000.0);
+  strokes.ink_reach = [pens = pens_of(options), millimetres](const Stroke& stroke) {
+    const Pen& pen = pen_of(stroke, pens);
+    return pen.dashes.empty() ? std::min(pen.width / 2 / millimetres, 1000.0) : 0.0;
+  };
   return strokes;
 }
 

@@ -16,6 +16,13 @@
 
 namespace frontmost::detail {
 
+/// The pen that draws a stroke.
+[[nodiscard]] inline const Pen& pen_of(const Stroke& stroke, const LinePens& pens) {
+  if (stroke.is_hidden) return pens.hidden;
+  if (stroke.is_outline) return pens.outline;
+  return stroke.kind == EdgeKind::crease ? pens.crease : pens.seen;
+}
+
 /// Letters that do not look like digits.
 inline constexpr std::string_view clear_letters = "ABCDEFGHJKLMNPQRSTUVWXYZ";
 

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "frontmost/sheets.h"
+#include "sheets/paper.h"
 
 namespace frontmost {
 namespace {
@@ -72,13 +73,9 @@ class SheetLayers {
   PageGroup& group_for(const Stroke& stroke, const SheetView& view, std::uint32_t number) {
     const bool is_crease = stroke.kind == EdgeKind::crease;
     const LayerOf layer = stroke.is_hidden ? hidden : stroke.is_outline ? outline : seen;
-    const Pen& pen = layer == hidden    ? pens_.hidden
-                     : layer == outline ? pens_.outline
-                     : is_crease        ? pens_.crease
-                                        : pens_.seen;
     // Creases share a group with the other lines of their object unless their pen differs.
     const bool is_apart = layer == seen && is_crease && pens_.crease.width != pens_.seen.width;
-    return group({layer, number, stroke.instance, is_apart}, view, pen);
+    return group({layer, number, stroke.instance, is_apart}, view, detail::pen_of(stroke, pens_));
   }
 
   struct GroupKey {

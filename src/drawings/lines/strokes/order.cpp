@@ -34,13 +34,13 @@ class EndTree {
     build(0, 0, ends_.size());
   }
 
-  using Found = std::pair<double, std::uint32_t>;  ///< squared distance and number
-
-  /// The remaining end nearest to `from`, other than `except`; among equals, the lowest number. no_end if none remains.
-  [[nodiscard]] Found nearest(const glm::dvec2& from, std::uint32_t except = no_end) const {
-    Found best(std::numeric_limits<double>::infinity(), no_end);
+  /// The remaining end nearest to `from`, at most at the squared distance `most` and other than `except`; among equals,
+  /// the lowest number. no_end if none is left.
+  [[nodiscard]] std::uint32_t nearest(const glm::dvec2& from, double most = std::numeric_limits<double>::infinity(),
+                                      std::uint32_t except = no_end) const {
+    Found best(most, no_end);
     visit(0, from, except, best);
-    return best;
+    return best.second;
   }
 
   void remove(std::uint32_t number) {
@@ -58,6 +58,7 @@ class EndTree {
   }
 
  private:
+  using Found = std::pair<double, std::uint32_t>;  ///< squared distance and number
   static constexpr std::size_t few = 8;
   struct End {
     glm::dvec2 at;
@@ -161,8 +162,8 @@ class EndPairs {
       if (end % 1024 == 0) check_cancelled(execution);
       if (!is_free(end)) continue;
       left.remove(end);
-      const auto [square, other] = left.nearest(place(chains_, end), opposite_[end]);
-      if (!(square <= apart_ * apart_)) continue;
+      const std::uint32_t other = left.nearest(place(chains_, end), apart_ * apart_, opposite_[end]);
+      if (other == no_end) continue;
       left.remove(other);
       join(end, other);
     }
@@ -232,7 +233,7 @@ std::vector<std::uint32_t> pen_order(const std::vector<Chain>& chains, const Exe
     glm::dvec2 pen(0);
     for (std::size_t i = first; i < last; ++i) {
       if (i % 1024 == 0) check_cancelled(execution);
-      const std::uint32_t end = left.nearest(pen).second;
+      const std::uint32_t end = left.nearest(pen);
       left.remove(end);
       left.remove(end ^ 1);
       order.push_back(end);

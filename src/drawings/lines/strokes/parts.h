@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <glm/glm.hpp>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "frontmost/base.h"
@@ -98,9 +99,11 @@ void straighten(Chain& chain, double tolerance);
 /// chord stays within `tolerance` of the arc, or has neighbours of similar length.
 void find_arcs(Chain& chain, double tolerance);
 
-/// Leaves out chains whose points all lie within `within` pixels of chains that stay: those of a lower rank, or longer
-/// ones of the same rank. Precondition: no arcs.
-[[nodiscard]] std::vector<Chain> uncovered(std::vector<Chain> chains, double within, const Execution& execution);
+/// Leaves out chains that lie in the ink of chains that stay: those of a lower rank whose pen is at least as wide, or
+/// longer ones of the same rank.
+/// `reaches`: how far ink reaches from a chain, by rank. Precondition: no arcs.
+[[nodiscard]] std::vector<Chain> uncovered(std::vector<Chain> chains, std::span<const double> reaches,
+                                           const Execution& execution);
 
 /// Joins chains of one rank whose ends are at most `apart` pixels from each other, by a straight line. Chains are
 /// sorted by rank, before and after. Precondition: no arcs.
@@ -109,7 +112,7 @@ void find_arcs(Chain& chain, double tolerance);
 /// The order of drawing, rank by rank, as the ends at which the pen begins: 2 i where chain i begins, 2 i + 1 where it
 /// ends. The next end is the one nearest to the pen. Precondition: chains are sorted by rank.
 [[nodiscard]] std::vector<std::uint32_t> pen_order(const std::vector<Chain>& chains, const Execution& execution);
-/// The chains in that order and direction.
+/// The chains in the order of pen_order(), each begun at the end given there.
 [[nodiscard]] std::vector<Chain> nearest_first(std::vector<Chain> chains, const Execution& execution);
 
 }  // namespace frontmost::lines_detail

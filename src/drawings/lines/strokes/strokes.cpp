@@ -237,18 +237,28 @@ class Ranked {
   const double cosine_;
 };
 
+void check_range(double value, double least, double most, const char* reason) {
+  if (!(value >= least && value <= most)) throw Error(ErrorCode::bad_argument, "strokes", reason);
+}
+
 void check(const StrokeOptions& options) {
-  const auto check_range = [](double value, double least, double most, const char* reason) {
-    if (!(value >= least && value <= most)) throw Error(ErrorCode::bad_argument, "strokes", reason);
-  };
   check_range(options.apart, 0.002, 1,
               "the greatest distance of lines that count as one must be from 0.002 to 1 pixel");
   check_range(options.tolerance, 1e-4, 1, "the tolerance must be from 0.0001 to 1 pixel");
   check_range(options.arc_tolerance, 0, 100, "the tolerance of arcs must be from 0 to 100 pixels");
   check_range(options.shortest, 0, 1e4, "the shortest stroke must be from 0 to 10000 pixels");
   check_range(options.joining, 0, 100, "the distance of ends that are joined must be from 0 to 100 pixels");
-  check_range(options.covered_within, 0, 1000, "the distance of covered strokes must be from 0 to 1000 pixels");
   check_range(options.grazing_angle, 0, std::numbers::pi / 2, "the grazing angle must be from 0 to pi/2");
+}
+
+/// How far ink reaches from each of the strokes.
+std::vector<double> reaches_of(const std::vector<Stroke>& strokes, const StrokeOptions& options) {
+  std::vector<double> reaches;
+  for (const Stroke& stroke : strokes) {
+    reaches.push_back(options.ink_reach(stroke));
+    check_range(reaches.back(), 0, 1000, "the reach of ink must be from 0 to 1000 pixels");
+  }
+  return reaches;
 }
 
 void append(const Chain& chain, const Stroke& like, bool with_arcs, Strokes& all) {
@@ -281,12 +291,14 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
   report_progress(execution, "strokes", 0.6);
   if (options.shortest > 0) chains = ShortChains(chains, parts.strokes, options, execution).kept();
   Strokes result;
-  if (options.covered_within > 0) {
+  if (options.ink_reach) {
     result.covered = chains.size();
-    chains = uncovered(std::move(chains), options.covered_within, execution);
+    chains = uncovered(std::move(chains), reaches_of(parts.strokes, options), execution);
     result.covered -= chains.size();
+    report_progress(execution, "strokes", 0.7);
   }
   if (options.nearest_first) chains = joined_ends(std::move(chains), options.joining, execution);
+  report_progress(execution, "strokes", 0.75);
   parallel_for(execution, chains.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       straighten(chains[i], options.tolerance);
