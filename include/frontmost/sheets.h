@@ -99,9 +99,9 @@ struct PicturePen {
 
 /// Draws strokes over a picture, in the pixels of its view. A pixel's ink follows from the distance of its centre from
 /// the nearest stroke, so rims are smooth, and strokes that meet or cross have no seams. `picture` has planes of floats
-/// R, G and B, in linear light, premultiplied by A if it has that. O(pixels near strokes), in parallel; the same to the
-/// bit for any number of threads. \throws Error bad_argument for such an image without colours, for a pen out of
-/// range, and for strokes with arcs.
+/// R, G and B, in linear light. If there is a plane A, colours are premultiplied by it. O(pixels of the picture, and of
+/// each stroke), in parallel; the same to the bit for any number of threads. \throws Error bad_argument for a picture
+/// without these planes, a pen out of range, strokes with arcs, and points that are not finite or beyond 1e9 pixels.
 void draw_strokes(Image& picture, const Strokes& strokes, const PicturePen& pen = {}, const Execution& execution = {});
 
 // Pages: pen lines and filled polygons in millimetres, written as SVG, PDF, DXF or JSON.
@@ -424,13 +424,13 @@ struct SheetOptions {
   /// Millimetres, 0.01 to 10: width of seen lines; other widths and dashes scale with it. None: the pens of `style`.
   std::optional<double> pen = std::nullopt;
   std::optional<double> crease_angle = std::nullopt;  ///< radians, see LineOptions
-  /// Millimetres, 0 to 10, see StrokeOptions::shortest; hatch lines are this long or 0.2. None: 0.5 for plotters,
-  /// otherwise 0.
+  /// Millimetres, 0 to 10, see StrokeOptions::shortest. Hatch lines shorter than this, or than 0.2 mm, are left out.
+  /// None: 0.5 for plotters, otherwise 0.
   std::optional<double> shortest_stroke = std::nullopt;
   std::optional<bool> centre_lines = std::nullopt;  ///< none: on technical sheets of named views
   /// True, for pen plotters: strokes continue from object to object and across gaps of 0.05 mm, ordered to spare lifts
-  /// of the pen. Strokes within half the width of seen lines from others are left out, see Strokes::covered. Use
-  /// with_real_dashes() to make each dash a line.
+  /// of the pen. Strokes in the ink of longer strokes are left out, see StrokeOptions::ink_reach and Strokes::covered.
+  /// Use with_real_dashes() to make each dash a line.
   bool plot = false;
   Lettering lettering = Lettering::strokes;  ///< of dimensions, sections and frame; text: not with `plot`
 

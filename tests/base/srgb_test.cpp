@@ -53,6 +53,17 @@ TEST(Srgb, OddValuesAreClamped) {
   }
 }
 
+TEST(Srgb, FloatsAreRoundedToSixteenBits) {
+  for (int byte = 0; byte < 256; ++byte) {
+    EXPECT_EQ(linear_of_srgb(float(byte) / 255), linear_of_srgb16(std::uint16_t(257 * byte)));
+    EXPECT_EQ(linear_of_srgb(float(byte) / 255), linear_of_srgb8(std::uint8_t(byte)));
+  }
+  EXPECT_EQ(linear_of_srgb(0.25f), linear_of_srgb16(16384));  // 65535 / 4 is 16383.75
+  EXPECT_EQ(linear_of_srgb(0.75f), linear_of_srgb16(49151));  // 49151.25
+  for (const float low : {-0.0f, -1.0f, -test::kFloatInfinity}) EXPECT_EQ(linear_of_srgb(low), 0);
+  for (const float high : {1.0f, 2.0f, test::kFloatInfinity, std::nanf("")}) EXPECT_EQ(linear_of_srgb(high), 1);
+}
+
 TEST(Srgb, KnownValues) {
   EXPECT_EQ(srgb8_of_linear(0.5f), 188);
   EXPECT_EQ(srgb8_of_linear(0.2140f), 127);

@@ -151,6 +151,12 @@ TEST(DrawStrokes, RefuseWhatTheyCannotDraw) {
   EXPECT_THROW(draw_strokes(depths, strokes), Error);
   for (const double bad : {0.0, -1.0, 2000.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THROW(draw_strokes(picture, strokes, {.width = bad}), Error);
+  for (const float bad : {-0.1f, 1.1f, std::numeric_limits<float>::quiet_NaN()})
+    EXPECT_THROW(draw_strokes(picture, strokes, {.color = {0.1f, bad, 0.1f}}), Error);
+  for (const double bad :
+       {2e9, -2e9, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+    for (const glm::dvec2& point : {glm::dvec2(bad, 10), glm::dvec2(10, bad)})
+      EXPECT_THROW(draw_strokes(picture, strokes_through({{{0, 10}, point}})), Error);
   strokes.bulges = {0.4, 0};
   EXPECT_THROW(draw_strokes(picture, strokes), Error);
   // Lines far outside leave no ink, and take no time.

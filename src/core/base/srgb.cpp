@@ -39,7 +39,7 @@ double power_5_12(double value) {
   return root;
 }
 
-constexpr double linear_of_srgb(double value) {
+constexpr double exact_linear_of(double value) {
   return value <= 0.04045 ? value / 12.92 : power_12_5((value + 0.055) / 1.055);
 }
 
@@ -59,7 +59,7 @@ constexpr std::uint32_t float_bits_from(double value) {
 constexpr std::array<std::uint32_t, 255> thresholds() {
   std::array<std::uint32_t, 255> result{};
   for (int byte = 1; byte < 256; ++byte)
-    result[std::size_t(byte - 1)] = float_bits_from(linear_of_srgb((byte - 0.5) / 255));
+    result[std::size_t(byte - 1)] = float_bits_from(exact_linear_of((byte - 0.5) / 255));
   return result;
 }
 
@@ -87,7 +87,7 @@ static_assert(buckets_hold_one_threshold_each());
 
 constexpr std::array<float, 256> linear_table() {
   std::array<float, 256> result{};
-  for (int byte = 0; byte < 256; ++byte) result[std::size_t(byte)] = float(linear_of_srgb(byte / 255.0));
+  for (int byte = 0; byte < 256; ++byte) result[std::size_t(byte)] = float(exact_linear_of(byte / 255.0));
   return result;
 }
 
@@ -147,6 +147,15 @@ std::uint16_t srgb16_of_linear(float linear) {
   return std::uint16_t(srgb_of_linear(double(linear)) * 65535 + 0.5);
 }
 
-float linear_of_srgb16(std::uint16_t value) { return float(linear_of_srgb(value / 65535.0)); }
+float linear_of_srgb16(std::uint16_t value) { return float(exact_linear_of(value / 65535.0)); }
+
+float linear_of_srgb(float srgb) {
+  const float clamped = srgb < 0 ? 0.0f : (srgb < 1 ? srgb : 1.0f);  // NaN becomes 1
+  // Most files hold multiples of 1/255, which a table converts.
+  const float bytes = clamped * 255.0f;
+  const auto nearest = std::uint8_t(bytes + 0.5f);
+  if (std::abs(bytes - float(nearest)) < 1e-3f) return linear_of_srgb8(nearest);
+  return linear_of_srgb16(std::uint16_t(clamped * 65535.0f + 0.5f));
+}
 
 }  // namespace frontmost

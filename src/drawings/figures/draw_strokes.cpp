@@ -23,6 +23,24 @@ struct InkLine {
   glm::dvec2 from, to;
 };
 
+// Each condition is written so that NaN fails.
+void check(const PicturePen& pen) {
+  if (!(pen.width >= 0.1 && pen.width <= 1000))
+    throw Error(ErrorCode::bad_argument, "pen", "the width must be from 0.1 to 1000 pixels");
+  for (int k = 0; k < 3; ++k)
+    if (!(pen.color[k] >= 0 && pen.color[k] <= 1))
+      throw Error(ErrorCode::bad_argument, "pen", "each part of the colour must be from 0 to 1");
+}
+
+void check(const Strokes& strokes) {
+  constexpr double farthest = 1e9;  // pixels; rows and columns of points beyond do not fit into integers
+  for (const glm::dvec2& point : strokes.points)
+    if (!(std::abs(point.x) <= farthest && std::abs(point.y) <= farthest))
+      throw Error(ErrorCode::bad_argument, "strokes", "points must be finite, and at most 1e9 pixels from zero");
+  if (std::any_of(strokes.bulges.begin(), strokes.bulges.end(), [](double bulge) { return bulge != 0; }))
+    throw Error(ErrorCode::bad_argument, "strokes", "must have no arcs: leave StrokeOptions::arc_tolerance at 0");
+}
+
 /// The lines of all strokes that may leave ink on a picture of this size.
 std::vector<InkLine> lines_within(const Strokes& strokes, const glm::dvec2& size, double reach) {
   std::vector<InkLine> lines;
@@ -82,14 +100,12 @@ class InkBand {
   std::vector<float> shares_;
 };
 
-std::uint16_t rounded16(float value) { return std::uint16_t(std::clamp(value, 0.0f, 1.0f) * 65535 + 0.5f); }
-
 /// Blends the ink into one pixel, in linear light or in sRGB. `alpha` is null for opaque pictures.
 struct InkBlend {
   explicit InkBlend(const PicturePen& pen) : in_srgb(pen.blend == Blend::srgb) {
     for (int k = 0; k < 3; ++k) {
-      srgb[k] = std::clamp(pen.color[k], 0.0f, 1.0f);
-      linear[k] = linear_of_srgb16(rounded16(srgb[k]));
+      srgb[k] = pen.color[k];
+      linear[k] = linear_of_srgb(srgb[k]);
     }
   }
 
@@ -100,7 +116,7 @@ struct InkBlend {
       if (in_srgb && before > 0) {
         const float old = float(srgb16_of_linear(value / before)) / 65535;
         const float mixed = (srgb[k] * share + old * before * (1 - share)) / after;
-        value = linear_of_srgb16(rounded16(mixed)) * after;
+        value = linear_of_srgb(mixed) * after;
       } else {
         value = linear[k] * share + value * (1 - share);
       }
@@ -131,10 +147,8 @@ struct PaintedPlanes {
 
 void draw_strokes(Image& picture, const Strokes& strokes, const PicturePen& pen, const Execution& execution) {
   validate(picture);
-  if (!(pen.width >= 0.1 && pen.width <= 1000))
-    throw Error(ErrorCode::bad_argument, "pen", "the width must be from 0.1 to 1000 pixels");
-  if (std::any_of(strokes.bulges.begin(), strokes.bulges.end(), [](double bulge) { return bulge != 0; }))
-    throw Error(ErrorCode::bad_argument, "strokes", "must have no arcs: leave StrokeOptions::arc_tolerance at 0");
+  check(pen);
+  check(strokes);
   const PaintedPlanes planes(picture);
   const InkBlend blend(pen);
   const double radius = pen.width / 2, reach = radius + 0.5;

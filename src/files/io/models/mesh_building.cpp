@@ -164,6 +164,9 @@ class CornerTree {
 
 namespace {
 
+/// Clamps a value to [0, 1]. NaN becomes 1, so that an undefined opacity changes nothing.
+float clamped(float value) { return value < 0 ? 0.0f : (value < 1 ? value : 1.0f); }
+
 /// Returns twice the polygon's area, projected along each axis (M. Newell).
 glm::dvec3 area_vector(std::span<const glm::vec3> corners) {
   glm::dvec3 sum{0};
@@ -171,17 +174,6 @@ glm::dvec3 area_vector(std::span<const glm::vec3> corners) {
   for (std::size_t i = 1; i + 1 < corners.size(); ++i)
     sum += glm::cross(glm::dvec3(corners[i]) - origin, glm::dvec3(corners[i + 1]) - origin);
   return sum;
-}
-
-/// Clamps a value to [0, 1]. NaN becomes 1, so that an undefined colour changes nothing.
-float clamped(float value) { return value < 0 ? 0.0f : (value < 1 ? value : 1.0f); }
-
-float linear(float srgb) {
-  // Most files hold multiples of 1/255, which a table converts.
-  const float bytes = clamped(srgb) * 255.0f;
-  const auto nearest = std::uint8_t(bytes + 0.5f);
-  if (std::abs(bytes - float(nearest)) < 1e-3f) return linear_of_srgb8(nearest);
-  return linear_of_srgb16(std::uint16_t(clamped(srgb) * 65535.0f + 0.5f));
 }
 
 }  // namespace
@@ -367,7 +359,7 @@ Triangulator::~Triangulator() = default;
 std::span<const glm::uvec3> Triangulator::operator()(std::span<const glm::vec3> corners) { return (*cutter_)(corners); }
 
 glm::vec4 linear_color(const glm::vec4& srgb) {
-  return {linear(srgb.r), linear(srgb.g), linear(srgb.b), clamped(srgb.a)};
+  return {linear_of_srgb(srgb.r), linear_of_srgb(srgb.g), linear_of_srgb(srgb.b), clamped(srgb.a)};
 }
 
 std::string skipped_faces_warning(std::uint64_t count) {
