@@ -187,7 +187,7 @@ constexpr Option drawing_options[] = {
      Group::drawing, for_lines, [](Settings& s, const Given& g) { s.drawing.sheet.lettering = g.choice<Lettering>(); }},
     {"plot", 0, "",
      "Prepare the drawing for pen plotters: strokes are joined across objects and ordered for few lifts of the pen; "
-     "strokes within half the --pen of others are left out; every dash is a line of its own.",
+     "strokes in the ink of longer strokes are left out; every dash is a line of its own.",
      Group::drawing, for_lines, [](Settings& s, const Given&) { s.drawing.sheet.plot = true; }},
     {"frame", 0, "",
      "Draw a frame and a title block (ISO 5457, ISO 7200); each of the five texts below implies it. The page must be "

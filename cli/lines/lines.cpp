@@ -134,15 +134,14 @@ std::vector<std::string> open_outlines(const Sheet& sheet) {
   return warnings;
 }
 
-/// Returns a warning about strokes that were left out because they lie in the ink of others, if there are any.
+/// Returns a warning about strokes that were left out because they lie in the ink of longer strokes, if there are any.
 std::optional<std::string> covered_warning(const Sheet& sheet) {
   std::size_t covered = 0;
   for (const DrawnView& view : sheet.views) covered += view.placed.strokes.covered;
   if (covered == 0) return std::nullopt;
-  return fmt::format(
-      "{} strokes are left out because all of each lies within half the pen's width of others; a smaller --pen draws "
-      "more of them",
-      covered);
+  return fmt::format("{}, in the ink of longer strokes; a smaller --pen draws {}",
+                     covered == 1 ? "1 stroke is left out" : fmt::format("{} strokes are left out", covered),
+                     covered == 1 ? "it" : "more of them");
 }
 
 void warn_of(const Sheet& sheet, const Surfaces& surfaces, const Settings& settings, Progress& progress) {

@@ -360,7 +360,8 @@ TEST_F(LinesCommand, PlottersDrawNothingTwiceInTheInkOfTheirPen) {
                         "f 5 7 8 6\nf 9 10 12 11\nf 5 6 10 9\nf 7 11 12 8\nf 5 9 11 7\nf 6 8 12 10\n");
   const std::string pile = "lines pile.obj --up +z --view front --camera-orthographic --scale 1:1 --plot --json ";
   const Outcome covered = succeed(pile), fine = succeed(pile + "--pen 0.38");
-  EXPECT_THAT(covered.err, HasSubstr("warning: 1 strokes are left out"));
+  EXPECT_THAT(covered.err,
+              HasSubstr("warning: 1 stroke is left out, in the ink of longer strokes; a smaller --pen draws it\n"));
   EXPECT_EQ(covered.json()["views"][0]["covered_strokes"], 1);
   EXPECT_EQ(covered.json()["paths"], 1);
   EXPECT_NEAR(covered.json()["drawn_mm"].get<double>(), 2 * 40.4, 0.01);
