@@ -39,12 +39,14 @@ void check_edges(const Settings& settings, const Job& job) {
     return std::find(file.kinds.begin(), file.kinds.end(), OutputKind::deep) != file.kinds.end();
   };
   if (std::any_of(job.files.begin(), job.files.end(), is_deep)) refuse("deep files have no edges; leave out --deep");
-  if (!job.files.empty() && !writes_colors(job) && !job.output.reference)
-    refuse("depths, ids and normals have no edges; add a picture with -o");
+  // Without any result, the terminal shows the picture.
+  const bool has_result = !job.files.empty() || job.output.hash || settings.run.json;
+  if (has_result && !writes_colors(job) && !job.output.reference)
+    refuse("there is no picture to draw edges over, and files of --depth, --ids and --normals have none; add -o");
 }
 
 Strokes edges_of(const RenderContext& context, const View& view) {
-  const Drawing drawing = draw_lines(context.surfaces, view, {.ripples = false}, context.execution);
+  const Drawing drawing = context.line_drawer->draw(view, {.ripples = false}, context.execution);
   const StrokeOptions strokes{.with_hidden = false, .by_kind = false, .by_outline = false, .by_instance = false};
   return chain_strokes(context.surfaces, drawing, strokes, context.execution);
 }

@@ -9,10 +9,10 @@
 
 namespace frontmost::cli {
 
-/// \throws UsageError for outputs and options that exclude edges.
+/// \throws UsageError for outputs and options that exclude edges, and for outputs without a picture or figure.
 void check_edges(const Settings& settings, const Job& job);
 
-/// Returns the visible edges of the surfaces, in pixels of the view.
+/// Returns the visible edges of the surfaces, in pixels of the view. The first view takes longer than further ones.
 [[nodiscard]] Strokes edges_of(const RenderContext& context, const View& view);
 
 /// Draws edges over a picture of the view.

@@ -74,7 +74,7 @@ void write_figures(const Job& job, const RenderContext& context, const Sights& s
   Page page = page_of(figure);
   if (sights.edges) add_edges(page, *sights.edges, job, context, result.view);
   result.timings.shade += watch.milliseconds();
-  if (job.output.background && nothing_stands_out(figure, *job.output.background))
+  if (job.output.background && !sights.has_edges() && nothing_stands_out(figure, *job.output.background))
     result.warnings.push_back(contrast_warning(false));
   if (!context.run.quiet) tell_size(job, figure);
   watch = {};

@@ -42,6 +42,7 @@ Json reference_json(const ReferenceResult& reference) {
 void add_timings(const Timings& timings, Json& json) {
   json["visible"] = times_json(timings.visible);
   if (timings.visible_maps) json["visible_maps"] = *timings.visible_maps;
+  if (timings.edges) json["edges"] = *timings.edges;
   json["shade"] = timings.shade;
   json["save"] = timings.save;
 }

@@ -110,8 +110,7 @@ constexpr Option output_options[] = {
      for_render, [](Settings& s, const Given& g) { s.output.shading = g.choice<Shading>(); }},
     {"edges", 0, "",
      "Draw the visible edges over the picture, as frontmost lines finds them: silhouettes, boundaries, creases, "
-     "borders "
-     "and intersections. Translucent surfaces hide edges, too.",
+     "borders and intersections. Translucent surfaces hide edges, too.",
      Group::look, for_render, [](Settings& s, const Given&) { s.output.edges = true; }},
     {"edge-width", 0, "PIXELS",
      "Width of --edges, 0.1 to 100; by default 1/900 of the picture's shorter side, at least 1.", Group::look,

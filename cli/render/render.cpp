@@ -209,12 +209,14 @@ int render_whole(Run& run) {
   }
   SharedBuffers buffers;
   Shader shader(surfaces);
+  LineDrawer line_drawer(surfaces);
   Environments environments;
   const std::vector<ViewResult> results = render_all(run, progress, [&](const Job& job) {
     RenderContext context{surfaces, shader, environments, settings.run, execution, run.on_terminal};
     context.by_rays = settings.run.method == Method::raycast;
     if (index) context.index = &*index;
     if (is_often) context.buffers = &buffers;
+    context.line_drawer = &line_drawer;
     if (is_tessellated(job, scene)) return render_tessellated_view(job, context);
     return render_view(job, context);
   });

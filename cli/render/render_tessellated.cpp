@@ -29,8 +29,9 @@ ViewResult render_tessellated_view(const Job& job, const RenderContext& context)
   std::optional<RayIndex> index;
   if (needs_index(job, context.run)) index.emplace(surfaces, context.execution);
   Shader shader(surfaces);
+  LineDrawer line_drawer(surfaces);
   return render_view(job, {surfaces, shader, context.environments, context.run, context.execution, context.keep_picture,
-                           index ? &*index : nullptr, context.by_rays, &context.surfaces});
+                           index ? &*index : nullptr, context.by_rays, &context.surfaces, nullptr, &line_drawer});
 }
 
 }  // namespace frontmost::cli

@@ -215,7 +215,7 @@ ViewResult render_view(const Job& job, const RenderContext& context) {
   if (job.output.edges) {
     const Stopwatch watch;
     sights.edges = edges_of(context, result.view);
-    result.timings.shade += watch.milliseconds();
+    result.timings.edges = watch.milliseconds();
   }
   finish_view(job, context, sights, result);
   write_layers(job, context, result);
@@ -266,8 +266,9 @@ void finish_view(const Job& job, const RenderContext& context, const Sights& sig
     }
     result.timings.shade += watch.milliseconds();
     const std::optional<glm::vec3>& background = job.output.background;
-    if (background && (picture ? nothing_stands_out(*picture, visible.primitives, *background)
-                               : nothing_stands_out(*bitmap, visible.primitives, *background)))
+    if (background && !sights.has_edges() &&
+        (picture ? nothing_stands_out(*picture, visible.primitives, *background)
+                 : nothing_stands_out(*bitmap, visible.primitives, *background)))
       result.warnings.push_back(contrast_warning(is_invisible(context.surfaces, visible.primitives)));
   }
   const auto map = [&](OutputKind kind) { return map_of(kind, job, context, sights); };

@@ -33,6 +33,7 @@ namespace frontmost::cli {
 struct Timings {
   std::vector<double> visible;         ///< one for each repetition (--repeat)
   std::optional<double> visible_maps;  ///< for the maps, if the picture has several samples
+  std::optional<double> edges;         ///< to find the edges, with --edges
   double shade = 0, save = 0;
 };
 
@@ -94,7 +95,8 @@ struct RenderContext {
   bool by_rays = false;             ///< whether the method is raycast
   /// Surfaces whose bounds determine the camera, if not `surfaces`.
   const Surfaces* framed = nullptr;
-  SharedBuffers* buffers = nullptr;  ///< null if a single picture is drawn
+  SharedBuffers* buffers = nullptr;   ///< null if a single picture is drawn
+  LineDrawer* line_drawer = nullptr;  ///< draws lines of `surfaces`; null for streams, which have no edges
 
   [[nodiscard]] const Surfaces& framed_surfaces() const { return framed ? *framed : surfaces; }
 };
@@ -111,6 +113,8 @@ struct Sights {
   const BlankReason* blank_reason = nullptr;  ///< counted during the stream's passes; borrowed
   std::optional<Strokes> edges;               ///< with --edges: the visible edges
 
+  /// Whether edges are drawn over the picture.
+  [[nodiscard]] bool has_edges() const { return edges && !edges->strokes.empty(); }
   [[nodiscard]] const SeenView& for_maps() const { return shared ? *picture : *maps; }
   /// Returns the input of the shader. Precondition: there is a picture.
   [[nodiscard]] ShadeInput shade_input(const RayIndex* index) const {

@@ -50,6 +50,10 @@ TEST_F(Contrast, WhiteOnWhiteSaysSo) {
   EXPECT_THAT(succeed("render nearly.gltf -o a.png" + view).err, HasSubstr(says)) << "6 of 255 steps";
   EXPECT_THAT(succeed("render white.gltf -o a.png --background black" + view).err, IsEmpty());
   EXPECT_THAT(succeed("render grey.gltf -o a.png --background #bcbcbc" + view).err, HasSubstr(says));
+  // Edges stand out, in pictures and in figures.
+  for (const char* file : {"a.png", "a.exr", "a.svg"}) {
+    EXPECT_THAT(succeed("render white.gltf --edges -o " + (file + view)).err, Not(HasSubstr(says))) << file;
+  }
   EXPECT_THAT(succeed("render white.gltf --json -o a.png" + view).json()["warnings"].dump(), HasSubstr("stands out"));
 }
 

@@ -90,6 +90,23 @@ TEST_F(Edges, OfSeveralModelsHideBehindEachOther) {
   EXPECT_GT(edge_paths("two.svg"), 9u);
 }
 
+TEST_F(Edges, OfABatchAreThoseOfSingleViews) {
+  write("views.json", R"({"views": [{"view": "front"}, {"view": "iso"}, {"view": "top"}],
+                          "outputs": {"output": "{view}.svg"}})");
+  const std::string render = "render builtin:gallery --resolution 200,120 --edges --quiet ";
+  succeed(render + "--batch views.json");
+  for (const std::string view : {"front", "iso", "top"}) {
+    succeed(render + "--view " + view + " -o alone.svg");
+    EXPECT_GT(edge_paths(view + ".svg"), 10u);
+    EXPECT_TRUE(read(view + ".svg") == read("alone.svg")) << view;
+  }
+}
+
+TEST_F(Edges, HaveATimeOfTheirOwn) {
+  EXPECT_GT(succeed(render_cube + "--edges -o p.png --json").json()["timings_ms"]["edges"], 0);
+  EXPECT_FALSE(succeed(render_cube + "-o p.png --json").json()["timings_ms"].contains("edges"));
+}
+
 TEST_F(Edges, StandOnTransparentGroundAndInOtherFormats) {
   succeed(render_cube +
           "--edges --edge-width 2 --background transparent -o clear.png -o clear.webp -o clear.exr --bits 16");
@@ -120,7 +137,9 @@ TEST_F(Edges, AreAsWideAsThePictureIsLarge) {
 TEST_F(Edges, RefuseWhatHasNone) {
   expect_failure("render cube.stl --edge-width 2 -o p.png", 2, "--edge-width needs --edges");
   const std::pair<const char*, const char*> cases[] = {
-      {"--depth d.exr", "--edges: depths, ids and normals have no edges; add a picture with -o"},
+      {"--depth d.exr", "--edges: there is no picture to draw edges over"},
+      {"--json", "files of --depth, --ids and --normals have none; add -o"},
+      {"--hash", "--edges: there is no picture to draw edges over"},
       {"--stream -o p.png", "--edges: edges need the whole model at once; leave out --stream"},
       {"--layers 2 -o p{layer}.png", "--edges: layers have no edges; leave out --layers"},
       {"--deep d.exr", "--edges: deep files have no edges; leave out --deep"},
