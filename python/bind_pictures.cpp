@@ -67,22 +67,6 @@ Image image_of_planes(const py::dict& planes) {
   return image;
 }
 
-/// An image from (height, width, 3 or 4) floats: linear light, premultiplied.
-Image image_of_colors(const py::array& array) {
-  const auto values = numbers<float>(array, "image", {-1, -1, array.shape(2)});
-  Image image;
-  image.height = int(values.shape(0));
-  image.width = int(values.shape(1));
-  const auto channels = std::size_t(values.shape(2));
-  const char* const names[] = {"R", "G", "B", "A"};
-  for (std::size_t c = 0; c < channels; ++c) {
-    Buffer<float> plane{std::size_t(image.width) * std::size_t(image.height)};
-    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = values.data()[i * channels + c];
-    image.channels.push_back({names[c], std::move(plane)});
-  }
-  return image;
-}
-
 Bitmap bitmap_of(const py::array& array) {
   const auto values = Array<std::uint8_t>::ensure(array);
   Bitmap bitmap{int(array.shape(1)), int(array.shape(0)),
@@ -104,7 +88,7 @@ void save_picture(const py::object& image, const py::object& path, const std::op
   const py::array array = py::array::ensure(image);
   const bool is_color = array && array.ndim() == 3 && (array.shape(2) == 3 || array.shape(2) == 4);
   if (is_color && array.dtype().kind() == 'u' && array.itemsize() == 1) return write(bitmap_of(array));
-  if (is_color && array.dtype().kind() == 'f') return write(image_of_colors(array));
+  if (is_color && array.dtype().kind() == 'f') return write(image_of_colors(array, "image", {-1, -1, array.shape(2)}));
   if (array && array.ndim() == 2 && array.dtype().kind() == 'b') return write(image_of_planes(py::dict("Y"_a = image)));
   throw py::type_error(
       "image: must be (height, width, 3 or 4) of uint8 or floats, a bool mask (height, width), or a dict "
@@ -149,9 +133,10 @@ void bind_environment(py::module_& m) {
              const py::array array = py::array::ensure(source);
              if (array.ndim() != 3 || array.shape(2) != 3 || array.dtype().kind() != 'f')
                throw py::value_error("source: must be (height, width, 3) of floats, or a name");
-             return run(threads, progress, [image = image_of_colors(array)](const Execution& execution) {
-               return Environment(image, execution);
-             });
+             return run(threads, progress,
+                        [image = image_of_colors(array, "source", {-1, -1, 3})](const Execution& execution) {
+                          return Environment(image, execution);
+                        });
            }),
            "source"_a, py::kw_only(), "threads"_a = 0, "progress"_a = py::none())
       .def_property_readonly("turns_with_camera", &Environment::turns_with_camera, doc("Environment.turns_with_camera"))
@@ -197,6 +182,21 @@ py::object bitmap_array(Bitmap&& bitmap) {
 }
 
 py::object bitmap_array(const Image& image) { return bitmap_array(bitmap_of(image)); }
+
+Image image_of_colors(const py::handle& given, const std::string& name, const ArrayShape& shape) {
+  const auto values = numbers<float>(given, name, shape);
+  Image image;
+  image.height = int(values.shape(0));
+  image.width = int(values.shape(1));
+  const auto channels = std::size_t(values.shape(2));
+  const char* const names[] = {"R", "G", "B", "A"};
+  for (std::size_t c = 0; c < channels; ++c) {
+    Buffer<float> plane{std::size_t(image.width) * std::size_t(image.height)};
+    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = values.data()[i * channels + c];
+    image.channels.push_back({names[c], std::move(plane)});
+  }
+  return image;
+}
 
 void bind_pictures(py::module_& m) {
   bind_environment(m);

@@ -178,15 +178,9 @@ HeldPage sheet_of_drawing(const HeldDrawing& held, HiddenLines hidden, DrawingSt
 /// A picture in linear light with the seen edges of the drawing over it, in sRGB.
 py::object drawn_over(const HeldDrawing& held, const py::object& picture, double width, const py::object& color,
                       Blend blend, int threads, const py::object& progress) {
-  const auto values = numbers<float>(picture, "picture", {-1, -1, 4});
+  const View& view = held.drawing->view;
+  Image image = image_of_colors(picture, "picture", {view.height, view.width, 4});
   const PicturePen pen{width, glm::vec3(point(color, "color")), blend};
-  Image image{int(values.shape(1)), int(values.shape(0)), {}};
-  const char* const names[] = {"R", "G", "B", "A"};
-  for (std::size_t c = 0; c < 4; ++c) {
-    Buffer<float> plane{std::size_t(image.width) * std::size_t(image.height)};
-    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = values.data()[4 * i + c];
-    image.channels.push_back({names[c], std::move(plane)});
-  }
   run(threads, progress, [&](const Execution& execution) {
     const std::shared_lock lock(held.of->scene->reading);
     const StrokeOptions seen{.with_hidden = false, .by_kind = false, .by_outline = false, .by_instance = false};
@@ -305,10 +299,9 @@ void bind_sheets(py::module_& m) {
            "shortest_stroke"_a = py::none(), "centre_lines"_a = py::none(), "plot"_a = false,
            "lettering"_a = Lettering::strokes, "page"_a = py::none(), "margin"_a = 10.0, "scale"_a = py::none(),
            "standard_scale"_a = py::none(), "millimetres_per_unit"_a = py::none(), "in_inches"_a = py::none(),
-           "inch_fractions"_a = false,
-           "title_block"_a = py::none(), "hatch"_a = py::none(), "stipple"_a = py::none(), "hatch_angle"_a = 45.0,
-           "light"_a = py::none(), "casts_shadows"_a = true, "keeps_picture"_a = false, "threads"_a = 0,
-           "progress"_a = py::none(), doc("Surfaces.draw_sheet"))
+           "inch_fractions"_a = false, "title_block"_a = py::none(), "hatch"_a = py::none(), "stipple"_a = py::none(),
+           "hatch_angle"_a = 45.0, "light"_a = py::none(), "casts_shadows"_a = true, "keeps_picture"_a = false,
+           "threads"_a = 0, "progress"_a = py::none(), doc("Surfaces.draw_sheet"))
       .def("draw_figure", &figure_of, "view"_a, py::kw_only(), "tolerance"_a = 6.0, "visible_only"_a = true,
            "merges_neighbours"_a = false, "most_polygons"_a = 2000000, "shading"_a = Shading::lit,
            "background"_a = py::make_tuple(1.0, 1.0, 1.0), "shadows"_a = Shadows::map, "opacity"_a = 1.0f,

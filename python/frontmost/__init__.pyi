@@ -1061,8 +1061,9 @@ class Drawing:
                   blend: Literal["linear", "srgb"] = "linear", threads: int = 0, progress: Progress = None) -> Bitmap:
         """A picture of the same view with the seen edges over it.
 
-        picture: what Visible.shade_linear() returns. width: pixels, 0.1 to 1000. color: sRGB, 0 to 1. Raises Error
-        bad_argument.
+        picture: what Visible.shade_linear() returns, with the size of the view. width: pixels, 0.1 to 1000. color: sRGB,
+        0 to 1. frontmost render --edges draws the edges of draw_lines(view, ripples=False). Raises Error bad_argument
+        for values out of range, ValueError for a picture of another size.
         """
     @property
     def view(self) -> View:
@@ -1120,7 +1121,7 @@ class Sheet:
         """Number of cylinders of 7 to 17 sides, which count as prisms and have no diameter."""
     @property
     def covered(self) -> int:
-        """Number of strokes left out by plot because they lie within half the width of seen lines from others."""
+        """Number of strokes left out by plot because they lie in the ink of longer strokes."""
 
 class Figure:
     """A picture of polygons, filled one after the other. Notebooks display it."""

@@ -56,11 +56,20 @@ def test_drawings_show_themselves(crate_behind_wall, tmp_path):
         drawing.sheet(hidden="dotted")
 
 
-def test_edges_over_a_picture_are_the_command_lines(cli):
-    folder = cli("render", "builtin:cubes", "--resolution", "160,90", "--edges", "--edge-width", "1.5", "-o", "edges.png", "-q")
-    surfaces = fm.Surfaces(fm.builtin("cubes"))
-    view = fm.frame(surfaces, 160, 90, samples=4)
-    edges = surfaces.draw_lines(view)
+def test_edges_over_a_picture_are_the_command_lines(cli, tmp_path):
+    # A rough plate that is seen nearly edge-on, so that its ripples have silhouettes.
+    rows, random = 30, numpy.random.RandomState(1)
+    points = [(x / 10, z / 60 + 0.05 * random.rand(), -z / 10) for z in range(rows) for x in range(rows)]
+    corners = [row * rows + x + 1 for row in range(rows - 1) for x in range(rows - 1)]
+    (tmp_path / "rough.obj").write_text(
+        "".join("v %.4f %.4f %.4f\n" % point for point in points) +
+        "".join(f"f {i} {i + 1} {i + rows + 1}\nf {i} {i + rows + 1} {i + rows}\n" for i in corners))
+    folder = cli("render", "rough.obj", "--view", "front", "--resolution", "160,90", "--edges", "--edge-width", "1.5",
+                 "-o", "edges.png", "-q")
+    surfaces = fm.Surfaces(fm.load(tmp_path / "rough.obj"))
+    view = fm.frame(surfaces, 160, 90, direction="front", samples=4)
+    edges = surfaces.draw_lines(view, ripples=False)
+    assert len(edges) < len(surfaces.draw_lines(view))
     picture = surfaces.zbuffer(view).shade_linear()
     drawn = edges.draw_over(picture, width=1.5)
     planes = fm.load_image(folder / "edges.png")
@@ -70,8 +79,12 @@ def test_edges_over_a_picture_are_the_command_lines(cli):
     assert not numpy.array_equal(drawn, surfaces.zbuffer(view).shade())
     with pytest.raises(fm.Error, match="width"):
         edges.draw_over(picture, width=0)
-    with pytest.raises(ValueError, match="^picture: "):
-        edges.draw_over(picture[:, :, :3])
+    for bad in (picture[:, :, :3], picture[:, 1:], picture[:80]):
+        with pytest.raises(ValueError, match=r"^picture: must have the shape \(90, 160, 4\), not "):
+            edges.draw_over(bad)
+    for bad in ((0, 0, 1.5), (-1, 0, 0)):
+        with pytest.raises(fm.Error, match="colour"):
+            edges.draw_over(picture, color=bad)
 
 
 def test_plots_count_the_strokes_in_the_ink_of_others(box):
