@@ -373,8 +373,9 @@ struct Round {
   double turn = 0;                     ///< radians, at most 2 pi: the part of the circle that exists
   bool is_hollow = false;              ///< cylinders: the material lies outside, as around a bore
   std::uint32_t first = 0, count = 0;  ///< range of Rounds::triangles
-  /// Above 0 for a blind hole, which is open at `from` and closed at `to`: the length of its wall, and of a conical
-  /// chamfer before it. Whether a floor is flat or a cone does not matter. 0 for all other rounds.
+  /// Above 0 for a blind hole, which is open at `from` and closed at `to`: the length of its wall, of chamfers and
+  /// roundings between the wall and a face before it or a plane floor, and of walls before a groove. A conical or round
+  /// bottom does not count. 0 for all other rounds.
   double depth = 0;
 };
 
@@ -415,12 +416,14 @@ struct Rounds {
 //   cylinder that begins at a circle may have vertices within its sides, where something else cuts it.
 // - Surfaces of revolution are smooth, go all the way round, and have their vertices in rings of 18 or more: tori,
 //   domes, cones. Cylinders are separate, and whole spheres, which have no axis of their own, are left out.
-// - A hole is blind if what adjoins one end of its wall lies within its radius, and what adjoins the other end lies
-//   outside of it. Holes of one axis and radius that follow each other, as around a groove, have one depth.
+// - A hole is blind if the surface beyond one end of its wall lies within its radius, and the surface beyond the other
+//   end lies outside of it. Walls of one object, axis and radius that follow each other, as around a groove, are one
+//   hole, whose depth reaches from the first wall to the last.
 // - Flats are plane faces that meet each other at 60 or 90 degrees in edges along one axis.
 
-/// Finds the circles and cylinders of which at least 160 degrees exist, and other surfaces of revolution. The time is
-/// near-linear. \throws Error limit_exceeded for more than 2^29 triangles.
+/// Finds the circles and cylinders of which at least 160 degrees exist, other surfaces of revolution, arcs of circles,
+/// and hexagons and squares of plane faces. The time is near-linear. \throws Error limit_exceeded for more than 2^29
+/// triangles.
 [[nodiscard]] Rounds find_rounds(const Surfaces& surfaces, const Execution& execution = {});
 
 struct CentreLineOptions {

@@ -574,6 +574,57 @@ TEST_F(DimensionsTest, DepthsAreThoseOfWalls) {
                                                    std::pair(8., 5.), std::pair(7., 16.)));
 }
 
+/// A hole of radius 5 and depth 12 in a plate 20 high, whose rim and floor are rounded with a radius of 1.
+std::vector<Ring> rounded_hole(int facets) {
+  std::vector<Ring> rings;
+  for (const bool is_floor : {false, true})
+    for (int i = 0; i <= facets; ++i) {
+      const double angle = std::numbers::pi / 2 * i / facets, sine = std::sin(angle), cosine = std::cos(angle);
+      rings.push_back(is_floor ? Ring{4 + cosine, 9 - sine} : Ring{6 - sine, 19 + cosine});
+    }
+  rings.push_back({0, 8});
+  return rings;
+}
+
+Rounds rounds_of(const Mesh& mesh) {
+  const Scene scene = scene_of(mesh);
+  return find_rounds(Surfaces(scene));
+}
+
+std::vector<double> depths_of(const Rounds& all) {
+  std::vector<double> depths;
+  for (const Round& round : all.rounds)
+    if (round.depth > 0) depths.push_back(std::round(1e4 * round.depth) / 1e4);
+  return depths;
+}
+
+TEST_F(DimensionsTest, DepthsDoNotDependOnFacets) {
+  for (const int facets : {1, 2, 3, 8, 40}) {
+    Mesh mesh;
+    add_plate(mesh, {rounded_hole(facets)});
+    EXPECT_THAT(depths_of(rounds_of(mesh)), ElementsAre(12)) << facets;
+  }
+  const std::vector<Ring> two_rows{{5.5, 20}, {5.25, 19.75}, {5, 19.5}, {5, 8}, {0, 8}};
+  const std::vector<Ring> stepped_drill{{5, 20}, {5, 10}, {3, 8}, {3, 4}, {0, 2}};
+  const std::vector<Ring> ball{{5, 20}, {5, 10}, {4, 7}, {3, 6}, {0, 5}};
+  const std::vector<Ring> grooved{{5, 20},   {5, 16},   {5.5, 15.5}, {7, 15.5}, {7, 13},
+                                  {5.5, 13}, {5, 12.5}, {5, 6},      {0, 6}};
+  Mesh mesh;
+  add_plate(mesh, {two_rows, stepped_drill, ball, grooved});
+  // The narrower bore has its own depth, with the cone that leads to the wider one.
+  EXPECT_THAT(depths_of(rounds_of(mesh)), testing::UnorderedElementsAre(12, 10, 6, 10, 14));
+}
+
+TEST_F(DimensionsTest, DepthsAreThoseOfOneObject) {
+  Mesh block, cover;
+  add_plate(block, {blind_hole});
+  add_plate(cover, {through_hole});
+  scene_ = scene_of(block);
+  scene_.meshes.push_back(cover);
+  scene_.instances.push_back({"cover", 1, glm::translate(glm::dmat4(1), glm::dvec3(0, 0, 21))});
+  EXPECT_THAT(depths_of(find_rounds(Surfaces(scene_))), ElementsAre(12));
+}
+
 TEST_F(DimensionsTest, HiddenCirclesHaveNoLeaders) {
   Mesh mesh;
   add_plate(mesh, {blind_hole, through_hole, counterbore, pin});

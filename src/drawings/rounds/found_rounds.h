@@ -73,6 +73,19 @@ struct Across {
   explicit Across(const glm::dvec3& axis);
 };
 
+/// A number by which lines are sorted: lines that nearly coincide have nearly equal keys. The key is the place of the
+/// line's nearest point to the origin, along a direction that is parallel to no usual row of holes.
+struct AxisKey {
+  double key, slack;  ///< `slack`: error of the key
+
+  /// `off`: error of the line's place; `turned`: error of its direction, in radians.
+  AxisKey(const glm::dvec3& point, const glm::dvec3& axis, double off, double turned) {
+    const double along = glm::dot(point, axis);
+    key = glm::dot(point - along * axis, glm::dvec3(0.7236, 0.5257, 0.4472));
+    slack = off + turned * std::abs(along);
+  }
+};
+
 /// 20.01 degrees, as for arcs of strokes: a larger turn is an edge between neighbours, or a corner of a polygon.
 inline constexpr double kWidestStep = 0.34924038;
 inline constexpr double kWidestCosine = 0.93963;
@@ -156,9 +169,10 @@ struct FoundRound {
 [[nodiscard]] std::vector<FoundRound> find_walls(const SmoothMesh& mesh, const std::vector<FoundCircle>& circles,
                                                  const Execution& execution);
 
-/// Sets Round::depth of blind holes, and turns these so that they begin at their open end. Linear in the walls'
-/// triangles; at most 4096 holes are compared with each other.
-void find_depths(const SmoothMesh& mesh, std::vector<FoundRound>& walls);
+/// Sets Round::depth of blind holes, and turns blind holes so that they begin at their open end. Linear in the walls'
+/// triangles, with at most 4096 comparisons for each hole; a hole that would need more has no depth.
+void find_depths(const SmoothMesh& mesh, const Surfaces& surfaces, std::vector<FoundRound>& walls,
+                 const Execution& execution);
 
 /// Flats with their triangles of the mesh, in place of Flats::first.
 struct FoundFlats {
@@ -166,7 +180,8 @@ struct FoundFlats {
   std::vector<std::uint32_t> triangles;
 };
 
-/// The hexagons of a mesh, and the squares about the axes of rounds. Linear in the triangles.
+/// The hexagons of a mesh, and the squares about the axes of rounds. Linear in the triangles; each square is compared
+/// with the rounds whose axes have nearly its key.
 [[nodiscard]] std::vector<FoundFlats> find_flats(const SmoothMesh& mesh, std::span<const Round> rounds,
                                                  const Execution& execution);
 

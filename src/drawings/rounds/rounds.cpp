@@ -2,8 +2,7 @@
 // Finds surfaces of revolution and prisms, and makes the public list of all rounds. Rings with corners at equal angles
 // have equal moments in all directions across their axis. So the axis passes through the mean of the corners, in the
 // direction whose second moment differs from the other two, which are equal. A prism has two rims about one axis, each
-// with its corners on a circle. Rims are sorted by the point of their axis nearest to the origin, along a direction
-// that is parallel to no usual row of holes.
+// with its corners on a circle. Rims are sorted by their AxisKey.
 #include <algorithm>
 #include <numbers>
 
@@ -161,7 +160,7 @@ constexpr std::size_t kMostLookedAt = 4096;
 
 struct PrismRim {
   Circle3 circle;
-  double key, slack;  ///< `key`: the axis' nearest point to the origin, along one direction; `slack`: error of the key
+  AxisKey axis;
   bool is_used = false;
 };
 
@@ -197,16 +196,16 @@ std::vector<Round> find_prisms(const SmoothMesh& mesh, const Execution& executio
   std::vector<PrismRim> rims;
   for (const SharpChain& chain : all.chains)
     if (const auto circle = circle_of(mesh, chain)) {
-      const double along = glm::dot(circle->centre, circle->axis), turned = 4 * mesh.noise / circle->radius;
-      const glm::dvec3 foot = circle->centre - along * circle->axis;
-      rims.push_back({*circle, glm::dot(foot, glm::dvec3(0.7236, 0.5257, 0.4472)),
-                      4 * kSamePrism * circle->radius + turned * std::abs(along)});
+      const double off = 4 * kSamePrism * circle->radius, turned = 4 * mesh.noise / circle->radius;
+      rims.push_back({*circle, AxisKey(circle->centre, circle->axis, off, turned)});
     }
-  std::stable_sort(rims.begin(), rims.end(), [](const PrismRim& a, const PrismRim& b) { return a.key < b.key; });
+  std::stable_sort(rims.begin(), rims.end(),
+                   [](const PrismRim& a, const PrismRim& b) { return a.axis.key < b.axis.key; });
   std::vector<Round> found;
   for (std::size_t i = 0; i < rims.size(); ++i) {
     PrismRim& rim = rims[i];
-    for (std::size_t k = i + 1; !rim.is_used && k < rims.size() && rims[k].key <= rim.key + 2 * rim.slack; ++k) {
+    for (std::size_t k = i + 1;
+         !rim.is_used && k < rims.size() && rims[k].axis.key <= rim.axis.key + 2 * rim.axis.slack; ++k) {
       if (k - i > kMostLookedAt) break;
       if (!are_ends_of_one(rim, rims[k])) continue;
       rim.is_used = rims[k].is_used = true;
@@ -267,7 +266,7 @@ Rounds find_rounds(const Surfaces& surfaces, const Execution& execution) {
     append_arc(found, turn, all.arcs);
   }
   std::vector<FoundRound> walls = find_walls(mesh, circles, execution);
-  find_depths(mesh, walls);
+  find_depths(mesh, surfaces, walls, execution);
   for (const FoundRound& wall : walls) append(wall, mesh.mesh, all);
   std::vector<bool> is_taken(mesh.mesh.triangles.size());
   RevolvedFinder finder{mesh};
