@@ -819,6 +819,52 @@ TEST_F(DimensionsTest, HexagonsHaveWidthsAcrossFlats) {
   EXPECT_EQ(dimensioned({.level = Dimensioning::holes}).count, 3u + 1u + 3u) << "the chamfers' circles";
 }
 
+/// A nut without its bore, 13 across flats and 8 high, whose ends have chamfers of 30 degrees in facets of a degree, as
+/// in ISO 4032.
+Mesh chamfered_nut() {
+  constexpr int sides = 360;
+  Mesh mesh;
+  std::array<std::vector<glm::vec3>, 4> rings;
+  for (int k = 0; k < sides; ++k) {
+    const double angle = 2 * std::numbers::pi * k / sides, inner = 6.2;
+    const double outer = 6.5 / std::cos(std::remainder(angle, std::numbers::pi / 3));
+    const double low = (outer - inner) * std::tan(std::numbers::pi / 6);
+    const glm::dvec2 out(std::cos(angle), std::sin(angle));
+    rings[0].emplace_back(glm::dvec3(inner * out, 0));
+    rings[1].emplace_back(glm::dvec3(outer * out, low));
+    rings[2].emplace_back(glm::dvec3(outer * out, 8 - low));
+    rings[3].emplace_back(glm::dvec3(inner * out, 8));
+  }
+  for (std::size_t k = 0; k < sides; ++k) {
+    const std::size_t next = (k + 1) % sides;
+    for (std::size_t i = 0; i + 1 < rings.size(); ++i) {
+      add_triangle(mesh, rings[i][k], rings[i][next], rings[i + 1][k]);
+      add_triangle(mesh, rings[i][next], rings[i + 1][next], rings[i + 1][k]);
+    }
+    add_triangle(mesh, rings[0][next], rings[0][k], {0, 0, 0});
+    add_triangle(mesh, rings[3][k], rings[3][next], {0, 0, 8});
+  }
+  return mesh;
+}
+
+TEST_F(DimensionsTest, FlatsMayHaveManyNeighboursAndTriangles) {
+  const glm::vec2 foot(0);
+  Mesh prism;
+  add_rings(prism, foot, {{0, 0}, {6.5, 0, 6}, {6.5, 2, 6}, {6.5, 4, 6}, {6.5, 6, 6}, {0, 6}}, 120);
+  for (Mesh mesh : {prism, chamfered_nut()}) {
+    // Triangles in the middle of a face come first, so those next to another face of the hexagon come last.
+    const auto distance = [&](const glm::uvec3& t) {
+      return glm::length(glm::vec2((mesh.positions[t.x] + mesh.positions[t.y] + mesh.positions[t.z]) / 3.0f) - foot);
+    };
+    std::stable_sort(mesh.triangles.begin(), mesh.triangles.end(),
+                     [&](const glm::uvec3& a, const glm::uvec3& b) { return distance(a) < distance(b); });
+    const Rounds all = rounds_of(mesh);
+    ASSERT_EQ(all.flats.size(), 1u);
+    EXPECT_EQ(all.flats[0].sides, 6u);
+    EXPECT_NEAR(all.flats[0].width, 13, 1e-4);
+  }
+}
+
 TEST_F(DimensionsTest, AWidthAcrossFlatsMayBeAnOverallSize) {
   Mesh mesh;
   add_rings(mesh, {0, 0}, {{0, 0}, {4, 0}, {4, 20}, {6.5, 20, 6}, {6.5, 26, 6}, {0, 26}});

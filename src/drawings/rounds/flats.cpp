@@ -24,7 +24,9 @@ constexpr double kWidestRound = 0.75;  // in widths: radius of a round about the
 class FlatsFinder {
  public:
   FlatsFinder(const SmoothMesh& mesh, std::span<const Round> rounds, const Execution& execution)
-      : mesh_(mesh), rounds_(rounds), face_of_(mesh.mesh.triangles.size(), no_index) {
+      : mesh_(mesh), face_of_(mesh.mesh.triangles.size(), no_index) {
+    for (const Round& round : rounds) rounds_.emplace_back(AxisKey(round.from, round.axis, 0, 0).key, &round);
+    std::sort(rounds_.begin(), rounds_.end());
     for (std::uint32_t t = 0; t < face_of_.size(); ++t) {
       if (t % 4096 == 0) check_cancelled(execution);
       if (face_of_[t] == no_index) add_face(t);
@@ -33,23 +35,18 @@ class FlatsFinder {
     is_used_.resize(first_.size() - 1);
   }
 
-  [[nodiscard]] std::vector<FoundFlats> run() {
+  [[nodiscard]] std::vector<FoundFlats> run(const Execution& execution) {
     std::vector<FoundFlats> found;
     for (std::uint32_t face = 0; face < is_used_.size(); ++face) {
-      const std::span<const std::uint32_t> of_face = triangles_of(face);
-      std::size_t tried = 0;
-      if (of_face.size() > kMostTriangles) continue;
-      for (const std::uint32_t t : of_face)
-        for (int k = 0; k < 3 && !is_used_[face] && tried < kMostNeighbours; ++k) {
-          const std::uint32_t other = mesh_.across(t, k);
-          if (other == no_index || face_of_[other] == face) continue;
-          const double cosine = glm::dot(mesh_.normals[t], mesh_.normals[other]);
-          const std::uint32_t sides = std::abs(cosine - 0.5) <= kSameTurn ? 6 : std::abs(cosine) <= kSameTurn ? 4 : 0;
-          if (sides == 0) continue;
-          ++tried;
-          const glm::dvec3 axis = glm::normalize(glm::cross(mesh_.normals[t], mesh_.normals[other]));
-          if (auto flats = flats_about(axis, face, sides)) found.push_back(std::move(*flats));
-        }
+      if (face % 256 == 0) check_cancelled(execution);
+      if (is_used_[face] || triangles_of(face).size() > kMostTriangles) continue;
+      for (const std::uint32_t other : neighbours_of(face)) {
+        const glm::dvec3 axis = glm::normalize(glm::cross(normal(face), normal(other)));
+        auto flats = flats_about(axis, face, sides_between(face, other));
+        if (!flats) continue;
+        found.push_back(std::move(*flats));
+        break;
+      }
     }
     return found;
   }
@@ -59,6 +56,37 @@ class FlatsFinder {
     return std::span(triangles_).subspan(first_[face], first_[face + 1] - first_[face]);
   }
   [[nodiscard]] const glm::dvec3& normal(std::uint32_t face) const { return mesh_.normals[triangles_[first_[face]]]; }
+
+  /// The number of sides of the regular polygon that two neighbouring faces may belong to; 0 if there is none.
+  [[nodiscard]] std::uint32_t sides_between(std::uint32_t face, std::uint32_t other) const {
+    const glm::dvec3 &a = normal(face), &b = normal(other);
+    if (a == glm::dvec3(0) || b == glm::dvec3(0)) return 0;
+    const double cosine = glm::dot(a, b);
+    return std::abs(cosine - 0.5) <= kSameTurn ? 6 : std::abs(cosine) <= kSameTurn ? 4 : 0;
+  }
+
+  /// The faces that meet a face at 60 or 90 degrees, each once; at most 8, those with the longest shared edges.
+  [[nodiscard]] std::vector<std::uint32_t> neighbours_of(std::uint32_t face) const {
+    std::vector<std::pair<std::uint32_t, double>> shared;  // neighbours and lengths of edges
+    for (const std::uint32_t t : triangles_of(face))
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t other = mesh_.across(t, k);
+        if (other == no_index || face_of_[other] == face || sides_between(face, face_of_[other]) == 0) continue;
+        shared.emplace_back(face_of_[other], glm::distance(mesh_.corner(t, k), mesh_.corner(t, (k + 1) % 3)));
+      }
+    std::sort(shared.begin(), shared.end());
+    std::size_t count = 0;
+    for (const auto& [other, length] : shared)
+      if (count > 0 && shared[count - 1].first == other)
+        shared[count - 1].second += length;
+      else
+        shared[count++] = {other, length};
+    shared.resize(count);
+    std::stable_sort(shared.begin(), shared.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+    std::vector<std::uint32_t> neighbours;
+    for (std::size_t i = 0; i < std::min(count, kMostNeighbours); ++i) neighbours.push_back(shared[i].first);
+    return neighbours;
+  }
 
   void add_face(std::uint32_t seed) {
     const auto face = std::uint32_t(first_.size());
@@ -88,6 +116,8 @@ class FlatsFinder {
     return no_index;
   }
 
+  /// The flats of which `first` is the first face in the order of faces. Other walks around them find nothing, so each
+  /// polygon is looked at once.
   [[nodiscard]] std::optional<FoundFlats> flats_about(const glm::dvec3& axis, std::uint32_t first,
                                                       std::uint32_t sides) {
     const double cosine = sides == 6 ? 0.5 : 0, sine = std::sqrt(1 - cosine * cosine);
@@ -95,7 +125,8 @@ class FlatsFinder {
     while (faces.size() <= sides) {
       const glm::dvec3& n = normal(faces.back());
       const std::uint32_t next = next_face(faces.back(), axis, cosine * n + sine * glm::cross(axis, n));
-      if (next == no_index || is_used_[next] || triangles_of(next).size() > kMostTriangles) return std::nullopt;
+      if (next == no_index || next < first || is_used_[next] || triangles_of(next).size() > kMostTriangles)
+        return std::nullopt;
       faces.push_back(next);
     }
     if (faces.back() != first) return std::nullopt;
@@ -134,26 +165,32 @@ class FlatsFinder {
   [[nodiscard]] bool is_about_a_round(const Flats& flats, const glm::dvec3& axis, double slack) const {
     const Tube tube{flats.from, axis, flats.width / 2};
     const double height = glm::distance(flats.from, flats.to);
-    return std::any_of(rounds_.begin(), rounds_.end(), [&](const Round& round) {
+    const AxisKey near(flats.from, axis, slack, 2 * kSameTurn);
+    auto each = std::lower_bound(rounds_.begin(), rounds_.end(), near.key - near.slack,
+                                 [](const auto& known, double key) { return known.first < key; });
+    for (; each != rounds_.end() && each->first <= near.key + near.slack; ++each) {
+      const Round& round = *each->second;
       const double from = glm::dot(round.from - flats.from, axis), to = glm::dot(round.to - flats.from, axis);
-      return round.radius <= kWidestRound * flats.width && glm::length(glm::cross(round.axis, axis)) <= kSameTurn &&
-             glm::length(tube.outwards(round.from)) <= slack && std::max(from, to) >= -flats.width &&
-             std::min(from, to) <= height + flats.width;
-    });
+      if (round.radius <= kWidestRound * flats.width && glm::length(glm::cross(round.axis, axis)) <= kSameTurn &&
+          glm::length(tube.outwards(round.from)) <= slack && std::max(from, to) >= -flats.width &&
+          std::min(from, to) <= height + flats.width)
+        return true;
+    }
+    return false;
   }
 
   const SmoothMesh& mesh_;
-  const std::span<const Round> rounds_;
-  std::vector<std::uint32_t> face_of_;    ///< by triangle
-  std::vector<std::uint32_t> triangles_;  ///< face by face
-  std::vector<std::uint32_t> first_;      ///< by face, with one more at the end
-  std::vector<bool> is_used_;             ///< by face
+  std::vector<std::pair<double, const Round*>> rounds_;  ///< ascending by the keys of their axes
+  std::vector<std::uint32_t> face_of_;                   ///< by triangle
+  std::vector<std::uint32_t> triangles_;                 ///< face by face
+  std::vector<std::uint32_t> first_;                     ///< by face, with one more at the end
+  std::vector<bool> is_used_;                            ///< by face
 };
 
 }  // namespace
 
 std::vector<FoundFlats> find_flats(const SmoothMesh& mesh, std::span<const Round> rounds, const Execution& execution) {
-  return FlatsFinder(mesh, rounds, execution).run();
+  return FlatsFinder(mesh, rounds, execution).run(execution);
 }
 
 }  // namespace frontmost::lines_detail
