@@ -16,6 +16,7 @@
 
 #include "frontmost/sheets.h"
 #include "sheets/dimensions/obstacles.h"
+#include "sheets/dimensions/positions.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -625,6 +626,17 @@ TEST_F(DimensionsTest, DepthsAreThoseOfOneObject) {
   EXPECT_THAT(depths_of(find_rounds(Surfaces(scene_))), ElementsAre(12));
 }
 
+TEST_F(DimensionsTest, HolesWithGroovesAreOneHole) {
+  Mesh mesh;
+  std::vector<Ring> hole;
+  for (const double z : {20.0, 17.0, 14.0}) hole.insert(hole.end(), {{7, z}, {7, z - 2}, {8, z - 2}, {8, z - 3}});
+  hole.insert(hole.end(), {{7, 11}, {7, 4}, {0, 4}});
+  add_plate(mesh, {hole});
+  scene_ = scene_of(mesh);
+  draw({above});
+  expect_texts(dimensioned({.level = Dimensioning::all}), {"30", "30", "15", "15", "\u230014\u21a716"});
+}
+
 TEST_F(DimensionsTest, HiddenCirclesHaveNoLeaders) {
   Mesh mesh;
   add_plate(mesh, {blind_hole, through_hole, counterbore, pin});
@@ -712,13 +724,50 @@ TEST_F(DimensionsTest, StepsHavePositionsOnce) {
   for (const glm::dvec2& room : position_rooms_of(views(), {.level = Dimensioning::holes}))
     EXPECT_EQ(room, glm::dvec2(0));
   // Long numbers take more room.
-  EXPECT_GT(position_rooms_of(views(), {.level = Dimensioning::all, .numbers_per_unit = 1e4})[0].x, rooms[0].x + 5);
+  EXPECT_GT(position_rooms_of(views(), {.level = Dimensioning::all, .numbers_per_unit = 1e8})[0].x, rooms[0].x + 5);
   EXPECT_EQ(dimensioned({.level = Dimensioning::holes}).count, 3u);
   draw({beside, above, NamedView::left, NamedView::right, NamedView::top, below});
   const Dimensions all = dimensioned({.level = Dimensioning::all});
   // Nothing lies below the steps in the view from the right, which has the top of the stairs on its left.
   expect_texts(all, {"100", "40", "50", "30", "60", "15", "30"});
   EXPECT_EQ(all.left_out, 0u);
+}
+
+TEST(Positions, AtOneDistanceAreOne) {
+  std::vector<Position> positions{
+      {10, 1, 5, {0}}, {10.03, 3, 7, {1}}, {10.04, 2, 6, {2}}, {20, 0, 4, {3}}, {0.01, 0, 9, {4}}};
+  const NumberRoom room{4.5, 2, 8, -100, 100};
+  std::sort(positions.begin(), positions.end(),
+            [](const Position& a, const Position& b) { return a.length < b.length; });
+  do {
+    for (const double away : {1.0, -1.0}) {
+      std::size_t left_out = 0;
+      const std::vector<Position> chosen = chosen_positions(positions, away, room, left_out);
+      ASSERT_EQ(chosen.size(), 2u);
+      EXPECT_EQ(chosen[0].foot, away > 0 ? 3 : 1) << "nearest to the row";
+      EXPECT_EQ(chosen[0].length, 7);
+      EXPECT_THAT(chosen[0].planes, testing::UnorderedElementsAre(0, 1, 2));
+      EXPECT_THAT(chosen[1].planes, ElementsAre(3));
+      EXPECT_EQ(left_out, 0u);
+    }
+  } while (std::next_permutation(positions.begin(), positions.end(),
+                                 [](const Position& a, const Position& b) { return a.length < b.length; }));
+}
+
+TEST_F(DimensionsTest, RowsHaveRoomForTheirNumbers) {
+  Mesh mesh;
+  add_box(mesh, {1000, 20, 10});
+  add_peg(mesh, {988 + 63 / 64.0, 10, 10}, 4, 5);
+  scene_ = scene_of(mesh);
+  draw({above});
+  const auto room = [&](const NumberStyle& style, double numbers_per_unit) {
+    return position_rooms_of(views(), {Dimensioning::holes, numbers_per_unit, style})[0];
+  };
+  constexpr double distances = 8.5;  // the overall size and its distances
+  EXPECT_GE(room({3, true}, 1).y, text_width("988 63/64", 3.5) + distances);
+  EXPECT_GE(room({2}, 1e-6).y, text_width("0.000989", 3.5) + distances);
+  EXPECT_GE(room({2}, 1e-7).x, text_width("0.000001", 3.5) + distances);
+  EXPECT_LT(room({2}, 1).y, room({3, true}, 1).y);
 }
 
 TEST_F(DimensionsTest, HolesAndStepsShareNumbers) {
@@ -817,6 +866,22 @@ TEST_F(DimensionsTest, HexagonsHaveWidthsAcrossFlats) {
   }
   expect_texts(dimensioned({.level = Dimensioning::all}), {"100", "60", "16", "10", "30", "70", "30", "2\u00d7AF 13"});
   EXPECT_EQ(dimensioned({.level = Dimensioning::holes}).count, 3u + 1u + 3u) << "the chamfers' circles";
+}
+
+TEST_F(DimensionsTest, HexagonHolesHavePositions) {
+  Mesh mesh;
+  add_plate(mesh, {{{6.5, 20, 6}, {6.5, 0, 6}}, {{6.5, 20, 6}, {6.5, 0, 6}}});
+  scene_ = scene_of(mesh);
+  draw({above});
+  expect_texts(dimensioned({.level = Dimensioning::all}), {"60", "30", "15", "45", "15", "2\u00d7AF 13"});
+}
+
+TEST_F(DimensionsTest, RoundingSplitsNoWidthsAcrossFlats) {
+  Mesh mesh;
+  add_plate(mesh, {{{6.4974, 20, 6}, {6.4974, 0, 6}}, {{6.4976, 20, 6}, {6.4976, 0, 6}}});
+  scene_ = scene_of(mesh);
+  draw({above});
+  expect_texts(dimensioned({.level = Dimensioning::all}), {"60", "30", "15", "45", "15", "2\u00d7AF 12.99"});
 }
 
 /// A nut without its bore, 13 across flats and 8 high, whose ends have chamfers of 30 degrees in facets of a degree, as

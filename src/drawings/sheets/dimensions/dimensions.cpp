@@ -81,7 +81,7 @@ struct Anchor {
 /// A hexagon or square of the scene as it appears in a view.
 struct SeenFlats {
   const Flats* flats;
-  SeenCircle circle;             ///< inscribed
+  SeenCircle circle;             ///< circle that touches the faces
   std::vector<glm::dvec2> outs;  ///< normals of the faces that are drawn, on the page
 };
 
@@ -94,7 +94,7 @@ struct MeasuredView {
   std::vector<const Round*> holes;    ///< blind holes that are open towards the viewer
   std::vector<SeenFlats> flats;       ///< seen along their axes, and drawn at half of their faces
 
-  explicit MeasuredView(const DimensionedView& view) : view_(view) {
+  MeasuredView(const DimensionedView& view, Dimensioning level) : view_(view) {
     const View& camera = view.drawing->view;
     const Projection& p = camera.projection;
     millimetres_ = camera.width / (p.right - p.left) * view.sheet->millimetres_per_pixel;
@@ -115,6 +115,10 @@ struct MeasuredView {
       else if (round.kind == RoundKind::cylinder)
         undrawn.push_back(&round);
     }
+    if (level < Dimensioning::all) return;
+    visible_.emplace(box);
+    for (const DrawnPart& part : view.drawing->parts)
+      if (part.hidden_by == 0) visible_->add(PageSegment{view.sheet->on_page(part.from), view.sheet->on_page(part.to)});
     for (const CircleArc& arc : view.rounds->arcs) {
       if (arcs.size() == most_arcs) break;
       if (!is_seen_along(arc.axis, camera)) continue;
@@ -123,7 +127,7 @@ struct MeasuredView {
       if (is_drawn_near(middle, near)) arcs.push_back({&arc, middle, out / glm::length(out)});
     }
     for (const Flats& each : view.rounds->flats)
-      if (view.is_dimensioned) look_at(each);
+      if (view.is_dimensioned) add_if_seen(each);
   }
 
   /// The extent along axis 0 (to the right) or 1 (upwards). Rounds reach farther than the corners of their polygons.
@@ -220,37 +224,37 @@ struct MeasuredView {
   }
 
  private:
-  void look_at(const Flats& all) {
-    const glm::dvec3 axis = glm::normalize(all.to - all.from);
+  void add_if_seen(const Flats& shape) {
+    const glm::dvec3 axis = glm::normalize(shape.to - shape.from);
     if (!is_seen_along(axis, view_.drawing->view)) return;
-    SeenFlats seen{&all, {nullptr, on_page(all.from), all.width / 2 * millimetres_}, {}};
-    for (std::uint32_t i = 0; i < all.sides; ++i) {
-      const double turn = 2 * std::numbers::pi * i / all.sides;
-      const glm::dvec3 out = all.side * std::cos(turn) + glm::cross(axis, all.side) * std::sin(turn);
-      const glm::dvec2 middle = on_page(all.from + out * (all.width / 2));
+    SeenFlats seen{&shape, {nullptr, on_page(shape.from), shape.width / 2 * millimetres_}, {}};
+    for (std::uint32_t i = 0; i < shape.sides; ++i) {
+      const double turn = 2 * std::numbers::pi * i / shape.sides;
+      const glm::dvec3 out = shape.side * std::cos(turn) + glm::cross(axis, shape.side) * std::sin(turn);
+      const glm::dvec2 middle = on_page(shape.from + out * (shape.width / 2));
       if (is_drawn_near(middle, same_place)) seen.outs.push_back(glm::normalize(middle - seen.circle.centre));
     }
     // The overall sizes state a square that bounds the view.
     const bool is_bound = glm::all(glm::lessThan(glm::abs(box.low + seen.circle.radius - seen.circle.centre) +
                                                      glm::abs(box.high - seen.circle.radius - seen.circle.centre),
                                                  glm::dvec2(same_place)));
-    if (2 * seen.outs.size() >= all.sides && !(all.sides == 4 && is_bound)) flats.push_back(std::move(seen));
+    if (2 * seen.outs.size() >= shape.sides && !(shape.sides == 4 && is_bound)) flats.push_back(std::move(seen));
   }
 
   /// Whether a visible line passes within `near` of a place on the page; across a direction if that is not 0.
   [[nodiscard]] bool is_drawn_near(const glm::dvec2& place, double near, const glm::dvec2& across = {0, 0}) const {
-    return std::any_of(view_.drawing->parts.begin(), view_.drawing->parts.end(), [&](const DrawnPart& part) {
-      if (part.hidden_by != 0) return false;
-      const glm::dvec2 from = view_.sheet->on_page(part.from), along = view_.sheet->on_page(part.to) - from;
+    return visible_ && visible_->has_line({place - near, place + near}, [&](const PageSegment& line) {
+      const glm::dvec2 along = line.to - line.from;
       const double length = glm::dot(along, along), off = glm::dot(along, across);
       if (off * off > straight * length) return false;
-      const double t = length > 0 ? std::clamp(glm::dot(place - from, along) / length, 0.0, 1.0) : 0;
-      return glm::distance(place, from + along * t) <= near;
+      const double t = length > 0 ? std::clamp(glm::dot(place - line.from, along) / length, 0.0, 1.0) : 0;
+      return glm::distance(place, line.from + along * t) <= near;
     });
   }
 
   const DimensionedView& view_;
-  double millimetres_ = 1;  ///< millimetres of paper per unit of the scene
+  std::optional<Obstacles> visible_;  ///< the visible lines, on the page; none below Dimensioning::all
+  double millimetres_ = 1;            ///< millimetres of paper per unit of the scene
 };
 
 constexpr double extension_gap = 1;        // millimetres between the measured feature and its extension line
@@ -483,7 +487,8 @@ struct Diameters {
       const Round* const hole = hole_at(*circle.round, view);
       if (!take(hole != nullptr ? *hole : *circle.round)) continue;
       circle.depth = hole != nullptr ? hole->depth : 0;
-      const std::size_t rings = rings_about(*circle.round, view);
+      // The walls of a hole around its grooves are no rings: they have one depth.
+      const std::size_t rings = hole != nullptr ? 1 : rings_about(*circle.round, view);
       // Circles are grouped by radius and not by number, because rounding may split one size.
       auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
         const double depth = g.circles[0].depth;
@@ -546,8 +551,8 @@ struct Diameters {
     return rings >= fewest_rings ? rings : 1;
   }
 
-  /// The diameters of cylinders that this view shows from the side, and no view along their axis. At most 64 cylinders
-  /// are looked at.
+  /// The diameters of cylinders that this view shows from the side, and no view along their axis. At most 4096
+  /// cylinders are looked at.
   [[nodiscard]] std::vector<Group> sides_of(const MeasuredView& view) {
     std::vector<Group> groups;
     std::size_t looked_at = 0;
@@ -573,9 +578,11 @@ struct Diameters {
     std::vector<Group> groups;
     for (const SeenFlats& seen : view.flats) {
       if (!take(*seen.flats)) continue;
-      const std::string text = flats_sign + text_of(seen.flats->width);
-      auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.text == text; });
-      if (group == groups.end()) group = groups.insert(group, {text, {}});
+      auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
+        const double radius = g.circles[0].radius;
+        return std::abs(radius - seen.circle.radius) <= same_size * std::max(radius, seen.circle.radius);
+      });
+      if (group == groups.end()) group = groups.insert(group, {flats_sign + text_of(seen.flats->width), {}});
       ++group->count;
       group->factor = view.size_of(options.numbers_per_unit);
       group->circles.push_back(seen.circle);
@@ -727,7 +734,7 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
     const double distance = (place[axis] - datum) * forwards;
     // So near to an end of the view, two extension lines look like one.
     if (distance < least_gap / 2 || distance > e.high - e.low - least_gap / 2) continue;
-    positions.push_back({distance, place[1 - axis] + away * extension_gap, step.length, step.plane});
+    positions.push_back({distance, place[1 - axis] + away * extension_gap, step.length, {step.plane}});
   }
   const bool has_all = options.level >= Dimensioning::all;
   const double thickness = options.text_height + text_distance, infinity = std::numeric_limits<double>::infinity();
@@ -738,7 +745,8 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
             e.high - e.low - (thickness + text_distance) / 2};
   const std::vector<Position> chosen = chosen_positions(std::move(positions), away, room, all.left_out);
   if (chosen.empty()) return;
-  for (const Position& p : chosen) missed.erase(p.plane);
+  for (const Position& p : chosen)
+    for (const std::size_t plane : p.planes) missed.erase(plane);
   const bool has_jogs = std::any_of(chosen.begin(), chosen.end(),
                                     [](const Position& p) { return std::abs(p.place - p.distance) > same_place; });
   const double end = row + away * (extension_overshoot + (has_jogs ? jog_room : 0));
@@ -769,12 +777,20 @@ void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec
   pen.origin(at(datum, row));
 }
 
-/// Millimetres that a row of positions along an axis occupies.
-double position_room(const Extent& extent, const DimensionOptions& options) {
-  // No number of the row has more digits before the point than the overall size.
-  const std::string longest = std::to_string(std::int64_t(std::min(9e15, extent.size * options.numbers_per_unit))) +
-                              "." + std::string(std::size_t(options.number_style.most_decimals), '0');
-  const double long_room = text_width(longest, options.text_height) + options.text_height + 5 * text_distance;
+/// Millimetres that a row of the positions of a view along an axis occupies. The longest number decides.
+double position_room(const MeasuredView& view, int axis, const std::vector<PlaneStep>& steps,
+                     const DimensionOptions& options) {
+  const Extent extent = view.extent(axis);
+  const double datum = axis == 0 ? extent.low : extent.high;
+  double longest = 0;
+  const auto look_at = [&](const glm::dvec2& place) {
+    const double number = view.size_of(std::abs(place[axis] - datum)) * options.numbers_per_unit;
+    longest = std::max(longest, text_width(dimension_text(number, options.number_style), options.text_height));
+  };
+  for (std::size_t i = 0; i < std::min(view.circles.size(), most_circles); ++i) look_at(view.circles[i].centre);
+  for (const SeenFlats& seen : view.flats) look_at(seen.circle.centre);
+  for (const PlaneStep& step : steps) look_at(view.on_page(glm::dvec2(step.at)));
+  const double long_room = longest + options.text_height + 5 * text_distance;
   return std::max(positions_room, long_room) + (options.level >= Dimensioning::all ? jog_room : 0);
 }
 
@@ -814,16 +830,22 @@ PlannedRows plan_rows(std::span<const DimensionedView> views, const std::vector<
   if (options.level >= Dimensioning::all) planned.steps = steps_of(stepped_views(views, measured));
   for (std::size_t i = 0; i < views.size(); ++i) {
     if (!views[i].is_dimensioned || measured[i].box.is_empty()) continue;
-    const bool has_circles = std::any_of(measured[i].circles.begin(), measured[i].circles.end(),
-                                         [](const SeenCircle& c) { return c.round->turn >= least_turn; });
-    for (const int axis : {0, 1})
-      if (has_circles ||
-          std::any_of(planned.steps[i][std::size_t(axis)].begin(), planned.steps[i][std::size_t(axis)].end(),
-                      [](const PlaneStep& step) { return !step.is_spare; }))
-        planned.rooms[i][1 - axis] = position_room(measured[i].extent(axis), options);
+    const MeasuredView& view = measured[i];
+    const Flats* const bounds[] = {view.extent(0).flats, view.extent(1).flats};  // their positions are overall sizes
+    const bool has_places = std::any_of(view.circles.begin(), view.circles.end(),
+                                        [](const SeenCircle& c) { return c.round->turn >= least_turn; }) ||
+                            std::any_of(view.flats.begin(), view.flats.end(), [&](const SeenFlats& seen) {
+                              return seen.flats != bounds[0] && seen.flats != bounds[1];
+                            });
+    for (const int axis : {0, 1}) {
+      const std::vector<PlaneStep>& steps = planned.steps[i][std::size_t(axis)];
+      if (has_places || std::any_of(steps.begin(), steps.end(), [](const PlaneStep& step) { return !step.is_spare; }))
+        planned.rooms[i][1 - axis] = position_room(view, axis, steps, options);
+    }
   }
   return planned;
 }
+
 void validate(const DimensionOptions& options) {
   if (!(options.numbers_per_unit > 0 && std::isfinite(options.numbers_per_unit)))
     throw Error(ErrorCode::bad_argument, "numbers_per_unit", "must be above 0 and finite");
@@ -887,7 +909,7 @@ std::vector<OverallSizes> overall_sizes_of(std::span<const DimensionedView> view
 std::vector<glm::dvec2> position_rooms_of(std::span<const DimensionedView> views, const DimensionOptions& options) {
   std::vector<MeasuredView> measured;
   if (options.level >= Dimensioning::holes)
-    for (const DimensionedView& view : views) measured.emplace_back(view);
+    for (const DimensionedView& view : views) measured.emplace_back(view, options.level);
   return plan_rows(views, measured, options).rooms;
 }
 
@@ -902,7 +924,7 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
   Obstacles obstacles(area);
   std::vector<MeasuredView> measured;
   for (const DimensionedView& view : views) {
-    measured.emplace_back(view);
+    measured.emplace_back(view, options.level);
     obstacles.add(*view.sheet);
   }
   for (const PageBox& box : taken) obstacles.add(box);

@@ -14,7 +14,7 @@ namespace frontmost::detail {
 
 /// A view of a sheet, with the settings for its dimensions.
 struct DimensionedView {
-  const SheetView* sheet = nullptr;    ///< its place on the page is final
+  const SheetView* sheet = nullptr;    ///< its place on the page; position_rooms_of() accepts any
   const Drawing* drawing = nullptr;    ///< in parallel projection
   const Rounds* rounds = nullptr;      ///< circles of the drawing's surfaces; null for no diameters
   const Surfaces* surfaces = nullptr;  ///< those of the drawing; null for no steps
@@ -46,7 +46,8 @@ struct OverallSizes {
 /// direction in true length, level or upright. Views that are not dimensioned have no sizes.
 [[nodiscard]] std::vector<OverallSizes> overall_sizes_of(std::span<const DimensionedView> views);
 /// Millimetres that rows of running dimensions occupy on the left of each view (x) and below it (y); 0 without a row.
-/// Views that show circles have both rows; steps need one.
+/// Views that show circles, or widths across flats, have both rows; steps need one. Positions are measured in units of
+/// the scene, so the place and scale of the views do not matter.
 [[nodiscard]] std::vector<glm::dvec2> position_rooms_of(std::span<const DimensionedView> views,
                                                         const DimensionOptions& options);
 /// Millimetres that sizes and positions occupy on the left of the view and below it, in addition to other marks.
@@ -62,8 +63,8 @@ struct Dimensions {
   /// One group of lines and one of strokes of texts, both without names; texts and dimensions are in the first group.
   PageLayer layer{"7 dimensions"};
   std::size_t count = 0;     ///< number of dimensions on the page
-  std::size_t left_out = 0;  ///< diameters, radii and positions without room
-  std::size_t undrawn = 0;   ///< diameters of cylinders that are seen along their axes, but hidden
+  std::size_t left_out = 0;  ///< diameters, radii, widths across flats, positions and steps without room
+  std::size_t undrawn = 0;   ///< as Sheet::undrawn
   std::size_t prisms = 0;    ///< diameters of cylinders of fewer than 18 sides, which count as polygons
 };
 

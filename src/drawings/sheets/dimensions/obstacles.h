@@ -98,6 +98,16 @@ class Obstacles {
     return count;
   }
 
+  /// Whether a line for which `is_wanted` is true passes through the cells of a box.
+  template <class IsWanted>
+  [[nodiscard]] bool has_line(const PageBox& box, const IsWanted& is_wanted) const {
+    bool has = false;
+    visit_cells(box, [&](std::size_t cell) {
+      for (const std::uint32_t s : segments_in_[cell]) has = has || is_wanted(segments_[s]);
+    });
+    return has;
+  }
+
  private:
   static constexpr double cell_side = 4;  ///< millimetres, about the size of a text
   static constexpr int most_cells = 512;  ///< along one side

@@ -47,19 +47,24 @@ bool place_numbers(std::vector<Position>& row, const NumberRoom& room) {
 std::vector<Position> chosen_positions(std::vector<Position> positions, double away, const NumberRoom& room,
                                        std::size_t& left_out) {
   std::erase_if(positions, [](const Position& p) { return p.distance < same_place; });
-  // Of positions at one distance, the one nearest to the row comes first.
-  std::sort(positions.begin(), positions.end(), [&](const Position& a, const Position& b) {
-    const bool is_same = std::abs(a.distance - b.distance) < same_place;
-    return is_same ? away * a.foot > away * b.foot : a.distance < b.distance;
-  });
+  std::stable_sort(positions.begin(), positions.end(),
+                   [](const Position& a, const Position& b) { return a.distance < b.distance; });
   std::vector<Position> each;
-  for (const Position& p : positions)
-    if (each.empty() || p.distance >= each.back().distance + same_place)
-      each.push_back(p);
-    else {
-      each.back().length = std::max(each.back().length, p.length);
-      each.back().plane = std::min(each.back().plane, p.plane);
+  double begin_of_run = 0;
+  for (Position& p : positions) {
+    if (each.empty() || p.distance >= begin_of_run + same_place) {
+      begin_of_run = p.distance;
+      each.push_back(std::move(p));
+      continue;
     }
+    // Of positions at one distance, the one nearest to the row has the extension line.
+    Position& known = each.back();
+    known.length = std::max(known.length, p.length);
+    known.planes.insert(known.planes.end(), p.planes.begin(), p.planes.end());
+    if (away * p.foot <= away * known.foot) continue;
+    known.foot = p.foot;
+    known.distance = p.distance;
+  }
   std::stable_sort(each.begin(), each.end(), [](const Position& a, const Position& b) { return a.length > b.length; });
   std::vector<Position> chosen;
   std::size_t steps = 0;

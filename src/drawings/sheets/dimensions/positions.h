@@ -10,15 +10,13 @@ namespace frontmost::detail {
 inline constexpr double same_place = 0.05;  // millimetres of paper
 inline constexpr double same_size = 1e-3;   // as a share of the size
 
-inline constexpr std::size_t no_plane = std::size_t(-1);
-
 /// A running dimension; all but `length` in millimetres on the page.
 struct Position {
-  double distance;               ///< from the datum
-  double foot;                   ///< where the extension line begins, along the other axis
-  double length;                 ///< of a step's lines, in pixels; infinite for a circle
-  std::size_t plane = no_plane;  ///< of a step
-  double place = 0;              ///< of the number, from the datum
+  double distance;                    ///< from the datum
+  double foot;                        ///< where the extension line begins, along the other axis
+  double length;                      ///< of a step's lines, in pixels; infinite for a circle
+  std::vector<std::size_t> planes{};  ///< of the steps at this distance
+  double place = 0;                   ///< of the number, from the datum
 };
 
 /// The room for the numbers of a row, in millimetres.
