@@ -152,12 +152,15 @@ void warn_of(const Sheet& sheet, const Surfaces& surfaces, const Settings& setti
   warn(open_outlines(sheet));
   if (const auto covered = covered_warning(sheet)) warn({*covered});
   if (sheet.left_out > 0)
-    warn(
-        {fmt::format("{} diameters and positions are left out for lack of room (a sheet has 64 diameters at most, a "
-                     "row 16 steps); use a larger --page or fewer views",
-                     sheet.left_out)});
+    warn({fmt::format(
+        "{} diameters, radii, positions and steps are left out for lack of room; use a larger --page or fewer "
+        "views (on any page, a sheet has at most 64 diameters and radii, and a row 16 steps)",
+        sheet.left_out)});
   if (sheet.undrawn > 0)
-    warn({fmt::format("cylinders without a diameter, because no view along their axis shows them: {}", sheet.undrawn)});
+    warn(
+        {fmt::format("cylinders without a diameter, because no view along their axis shows them, and none from the "
+                     "side states it: {}",
+                     sheet.undrawn)});
   if (sheet.prisms > 0)
     warn({fmt::format("cylinders of 7 to 17 sides count as prisms and get no diameter: {}", sheet.prisms)});
 }

@@ -483,9 +483,11 @@ struct Sheet {
   std::optional<double> scale;   ///< none in perspective
   std::vector<DrawnView> views;  ///< whole views, then sections, in their order
   bool is_empty = false;         ///< no line of the model is on the sheet
-  std::size_t left_out = 0;      ///< number of diameters, radii and positions without room
-  std::size_t undrawn = 0;       ///< number of diameters of cylinders seen along their axes, but hidden
-  std::size_t prisms = 0;        ///< number of diameters of cylinders of 7 to 17 sides, which count as polygons
+  std::size_t left_out = 0;      ///< number of diameters, radii, widths across flats, positions and steps without room
+  /// Number of cylinders without a diameter: no view along the cylinder's axis shows the cylinder, and no view from the
+  /// side states its diameter.
+  std::size_t undrawn = 0;
+  std::size_t prisms = 0;  ///< number of diameters of cylinders of 7 to 17 sides, which count as polygons
 };
 
 /// \throws Error bad_argument, with the field, for values out of range, and options that exclude or need each other.

@@ -1112,10 +1112,11 @@ class Sheet:
         """Width and height in millimetres."""
     @property
     def left_out(self) -> int:
-        """Number of diameters, radii and positions that were left out for lack of room."""
+        """Number of diameters, radii, widths across flats, positions and steps without room."""
     @property
     def undrawn(self) -> int:
-        """Number of diameters left out because no view along the cylinder's axis shows the cylinder."""
+        """Number of cylinders without a diameter: no view along the cylinder's axis shows the cylinder, and no view from the
+        side states its diameter."""
     @property
     def prisms(self) -> int:
         """Number of cylinders of 7 to 17 sides, which count as prisms and have no diameter."""

@@ -221,7 +221,8 @@ TEST_F(LinesCommand, SheetsHaveDimensionsWhereTheyAreAskedFor) {
   const std::string pegs = "lines pegs.json --views front,top --dimensions diameters -o a.svg";
   for (const char* const hidden : {"", " --hidden dashed"})
     EXPECT_THAT(succeed(pegs + hidden).err,
-                HasSubstr("warning: cylinders without a diameter, because no view along their axis shows them: 1\n"));
+                HasSubstr("warning: cylinders without a diameter, because no view along their axis shows them, "
+                          "and none from the side states it: 1\n"));
   write("low.obj", peg_obj(5, 20, 12));
   EXPECT_THAT(succeed("lines low.obj --up +z --views front,top --dimensions diameters -o a.svg").err,
               HasSubstr("warning: cylinders of 7 to 17 sides count as prisms and get no diameter: 1\n"));
