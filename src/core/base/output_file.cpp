@@ -24,8 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t new_file_mode = 0666;  // less the umask
-
 /// The path at the end of a chain of symbolic links, whether or not a file is there.
 fs::path follow_links(fs::path path) {
   constexpr int longest_chain = 40;  // the limit of Linux
@@ -60,11 +58,12 @@ fs::path make_beside(const fs::path& target, Make&& make) {
 
 }  // namespace
 
-OutputFile::OutputFile(const std::string& path, Staging staging)
+OutputFile::OutputFile(const std::string& path, Staging staging, unsigned permissions)
     : name_(path == "-"    ? "standard output"
             : path.empty() ? "''"
                            : path),
-      target_(follow_links(path)) {
+      target_(follow_links(path)),
+      new_mode_(permissions) {
   if (path == "-") {
     kind_ = Kind::standard_output;
     descriptor_ = STDOUT_FILENO;
@@ -104,7 +103,7 @@ void OutputFile::fail(const char* doing) const {
 
 bool OutputFile::open_unnamed() {
 #ifdef O_TMPFILE
-  descriptor_ = ::open(folder_of(target_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, new_file_mode);
+  descriptor_ = ::open(folder_of(target_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, new_mode_);
   if (descriptor_ >= 0 && ::access(link_of(descriptor_).c_str(), F_OK) == 0) {
     kind_ = Kind::unnamed;
     return true;
@@ -118,7 +117,7 @@ bool OutputFile::open_unnamed() {
 void OutputFile::open_named() {
   kind_ = Kind::named;
   temporary_ = make_beside(target_, [&](const fs::path& path) {
-    descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, new_file_mode);
+    descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, new_mode_);
     return descriptor_ >= 0;
   });
   if (temporary_.empty()) fail("cannot create");

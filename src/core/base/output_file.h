@@ -22,7 +22,8 @@ class OutputFile {
   enum class Staging { best, named };
 
   /// \throws Error file_unwritable, as all member functions do.
-  explicit OutputFile(const std::string& path, Staging staging = Staging::best);
+  /// `permissions`: those of a new file, less the umask.
+  explicit OutputFile(const std::string& path, Staging staging = Staging::best, unsigned permissions = 0666);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -45,6 +46,7 @@ class OutputFile {
   std::filesystem::path target_;
   std::filesystem::path temporary_;  ///< path of the temporary file; empty if there is none
   std::optional<unsigned> mode_;     ///< permissions of the file that is replaced
+  const unsigned new_mode_;          ///< permissions of a new file
   Kind kind_ = Kind::direct;
   int descriptor_ = -1;
 };

@@ -36,6 +36,9 @@ std::string glb_of_triangle() {
   return read_text(folder.file("triangle.glb"));
 }
 
+/// Waits until files that were written are older than whatever begins now.
+void settle() { usleep(20'000); }
+
 /// An importer that counts its runs and always answers with a triangle.
 class CountedImporter {
  public:
@@ -48,6 +51,7 @@ class CountedImporter {
   }
   /// Loads the part, which must be the triangle. \returns how often the importer has run so far.
   [[nodiscard]] int runs_after_loading(const ImportOptions& import = {}) const {
+    settle();
     LoadOptions options;
     options.import = import;
     const Scene scene = load(script_.part(), options);
@@ -67,8 +71,7 @@ class CountedImporter {
   [[nodiscard]] std::string part() const { return script_.part(); }
   /// The cache as load() uses it for the part.
   [[nodiscard]] ImportCache cache(Bytes model) const {
-    using namespace std::string_literals;
-    return {folder(), program() + "\0step\0"s + "0\0"s + "0.20943951023931953\0"s, model};
+    return {folder(), {program(), "step", "0", "0.20943951023931953", std::to_string(ImportOptions().bytes)}, model};
   }
 
  private:
@@ -80,8 +83,10 @@ TEST(ImportCache, AFileIsTessellatedOnce) {
   EXPECT_EQ(importer.runs_after_loading(), 1);
   EXPECT_EQ(importer.runs_after_loading(), 1);
   EXPECT_EQ(importer.entries().size(), 1u);
-  // Limits do not change an answer.
-  EXPECT_EQ(importer.runs_after_loading({.seconds = 10, .bytes = std::uint64_t(1) << 30}), 1);
+  // Time and threads do not change an answer.
+  EXPECT_EQ(importer.runs_after_loading({.seconds = 10}), 1);
+  EXPECT_EQ(triangle_count(load(importer.part(), {}, {.threads = 1})), 1u);
+  EXPECT_EQ(importer.runs_after_loading(), 1);
   // Whatever changes an answer does.
   EXPECT_EQ(importer.runs_after_loading({.tolerance = 0.5}), 2);
   EXPECT_EQ(importer.runs_after_loading({.angle = 0.5}), 3);
@@ -94,6 +99,89 @@ TEST(ImportCache, AFileIsTessellatedOnce) {
   fs::copy_file(importer.part(), importer.part() + ".stp");
   EXPECT_EQ(triangle_count(load(importer.part() + ".stp")), 1u);
   EXPECT_EQ(importer.runs_after_loading(), 4);
+}
+
+TEST(ImportCache, AnswersWithLessMemoryAreNotThoseWithMore) {
+  // OpenCASCADE leaves out faces for which it finds no memory.
+  const CountedImporter importer;
+  EXPECT_EQ(importer.runs_after_loading({.bytes = std::uint64_t(1) << 30}), 1);
+  EXPECT_EQ(importer.runs_after_loading({.bytes = std::uint64_t(2) << 30}), 2);
+  EXPECT_EQ(importer.runs_after_loading({.bytes = std::uint64_t(1) << 30}), 2);
+}
+
+TEST(ImportCache, OtherLibrariesMayBeLoadedInAnotherEnvironment) {
+  const CountedImporter importer;
+  int runs = importer.runs_after_loading();
+  for (const char* const name : {"LD_LIBRARY_PATH", "LD_PRELOAD", "CSF_StandardDefaults", "CASROOT"}) {
+    SCOPED_TRACE(name);
+    const char* const before = std::getenv(name);
+    const std::optional<std::string> value = before ? std::optional<std::string>(before) : std::nullopt;
+    setenv(name, std::string(name) == "LD_PRELOAD" ? "" : "/somewhere/else", 1);
+    if (!before || std::string(name) != "LD_PRELOAD") {
+      EXPECT_EQ(importer.runs_after_loading(), ++runs);
+    }
+    EXPECT_EQ(importer.runs_after_loading(), runs);
+    unsetenv(name);
+    if (value) setenv(name, value->c_str(), 1);
+    EXPECT_EQ(importer.runs_after_loading(), runs) << "as before";
+  }
+}
+
+TEST(ImportCache, ProgramsAreKnownByTheirFiles) {
+  // A script in front of the importer, which the answer does not name.
+  const ScratchFolder folder;
+  write_text(folder.file("library"), "library");
+  const CountedImporter importer(binary_frame('f', folder.file("library")));
+  int runs = importer.runs_after_loading();
+  std::ofstream(importer.program(), std::ios::app) << "# version 2\n";
+  EXPECT_EQ(importer.runs_after_loading(), ++runs);
+  // One path, by way of which the program is another.
+  fs::create_directory_symlink(fs::path(importer.program()).parent_path(), folder.file("link"));
+  setenv("FRONTMOST_IMPORT", folder.file("link/import").c_str(), 1);
+  EXPECT_EQ(importer.runs_after_loading(), runs);
+  fs::remove(folder.file("link"));
+  const CountedImporter other(binary_frame('f', folder.file("library")));
+  fs::create_directory_symlink(fs::path(other.program()).parent_path(), folder.file("link"));
+  setenv("FRONTMOST_IMPORT", folder.file("link/import").c_str(), 1);
+  EXPECT_EQ(other.runs_after_loading(), 1);
+}
+
+TEST(ImportCache, AChangedLibraryReadsAgain) {
+  const ScratchFolder folder;
+  const std::string library = folder.file("library");
+  write_text(library, "library 1");
+  const CountedImporter importer(binary_frame('f', library));
+  int runs = importer.runs_after_loading();
+  EXPECT_EQ(importer.runs_after_loading(), runs);
+  // With the same size and time.
+  const auto time = fs::last_write_time(library);
+  write_text(library, "library 2");
+  fs::last_write_time(library, time);
+  EXPECT_EQ(importer.runs_after_loading(), ++runs);
+  EXPECT_EQ(importer.runs_after_loading(), runs);
+}
+
+TEST(ImportCache, LibrariesThatChangeMeanwhileMadeAnUnknownAnswer) {
+  const ScratchFolder folder;
+  const std::string library = folder.file("library");
+  write_text(library, "library 1");
+  settle();
+  const std::string model = "model";
+  const Importer importer("none");
+  const ImportCache cache(importer.folder(), {library}, std::as_bytes(std::span(model)));
+  write_text(library, "library 2");
+  ImportAnswer answer;
+  answer.files = {library};
+  cache.keep(answer);
+  EXPECT_TRUE(importer.entries().empty());
+  settle();
+  const ImportCache later(importer.folder(), {library}, std::as_bytes(std::span(model)));
+  answer.files.assign(ImportAnswer::most_files + 1, library);
+  later.keep(answer);
+  EXPECT_TRUE(importer.entries().empty()) << "further files may have been cut off";
+  answer.files.pop_back();
+  later.keep(answer);
+  EXPECT_EQ(importer.entries().size(), 1u);
 }
 
 TEST(ImportCache, CanBeSwitchedOff) {
@@ -207,6 +295,51 @@ TEST(ImportCache, FoldersOfOthersAreNotUsed) {
   EXPECT_EQ(importer.runs_after_loading(), 4);
 }
 
+TEST(ImportCache, FoldersThatOthersMayWriteAreNotUsed) {
+  const CountedImporter importer;
+  int runs = importer.runs_after_loading();
+  struct ::stat status {};
+  ASSERT_EQ(::stat(importer.entries().at(0).c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0600u);
+  for (const fs::path& folder : {importer.folder(), importer.folder().parent_path()}) {
+    for (const mode_t mode : {0770, 0707}) {
+      chmod(folder.c_str(), mode);
+      EXPECT_EQ(importer.runs_after_loading(), ++runs) << folder << mode;
+    }
+    chmod(folder.c_str(), 0755);
+    EXPECT_EQ(importer.runs_after_loading(), runs) << "others may read";
+  }
+  chmod(importer.entries().at(0).c_str(), 0660);
+  EXPECT_EQ(importer.runs_after_loading(), ++runs);
+  // A folder in another place, by way of a link.
+  const ScratchFolder elsewhere;
+  fs::rename(importer.folder(), elsewhere.file("import"));
+  fs::create_directory_symlink(elsewhere.file("import"), importer.folder());
+  EXPECT_EQ(importer.runs_after_loading(), ++runs);
+  EXPECT_EQ(importer.runs_after_loading(), ++runs);
+}
+
+TEST(ImportCache, AFolderThatCannotBeWrittenIsReadAlone) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may write to every folder";
+  const CountedImporter importer;
+  EXPECT_EQ(importer.runs_after_loading(), 1);
+  chmod(importer.folder().c_str(), 0500);
+  EXPECT_EQ(importer.runs_after_loading(), 1);
+  EXPECT_EQ(importer.runs_after_loading({.angle = 0.5}), 2);
+  EXPECT_EQ(importer.runs_after_loading({.angle = 0.5}), 3);
+  chmod(importer.folder().c_str(), 0700);
+}
+
+TEST(ImportCache, NoFolderIsMadeInThoseOfOthers) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can give a folder to another user";
+  const CountedImporter importer;
+  const fs::path base = importer.folder().parent_path().parent_path();
+  fs::create_directory(base);
+  ASSERT_EQ(chown(base.c_str(), 1, 1), 0);
+  EXPECT_EQ(importer.runs_after_loading(), 1);
+  EXPECT_TRUE(fs::is_empty(base));
+}
+
 TEST(ImportCache, WithoutAFolderFilesAreRead) {
   const CountedImporter importer;
   const std::string base = importer.folder().parent_path().parent_path().string();
@@ -236,10 +369,11 @@ TEST(ImportCache, TheLeastRecentlyUsedEntriesGo) {
   const Importer importer("none");
   const std::string library = importer.folder().parent_path().parent_path().string() + ".so";
   write_text(library, "library");
+  settle();
   constexpr std::uint64_t most = 64 << 10;
   const std::string model = "model";
   const auto cache = [&](int question) {
-    return ImportCache(importer.folder(), std::to_string(question), std::as_bytes(std::span(model)), most);
+    return ImportCache(importer.folder(), {library, std::to_string(question)}, std::as_bytes(std::span(model)), most);
   };
   const auto is_kept = [&](int question) { return cache(question).find().has_value(); };
   ImportAnswer answer;
@@ -267,6 +401,36 @@ TEST(ImportCache, TheLeastRecentlyUsedEntriesGo) {
   cache(7).keep(answer);
   EXPECT_FALSE(is_kept(7)) << "an entry is a quarter of the cache at most";
   EXPECT_EQ(importer.entries().size(), 6u);
+  const std::string large(most / 4 + 1, 'x');
+  ImportCache(importer.folder(), {library}, std::as_bytes(std::span(large)), most).keep({});
+  EXPECT_EQ(importer.entries().size(), 6u);
+}
+
+TEST(ImportCache, FilesOfOthersStay) {
+  const Importer importer("none");
+  const std::string library = importer.folder().parent_path().parent_path().string() + ".so", model = "model";
+  write_text(library, "library");
+  settle();
+  const auto keep = [&](const std::string& word) {
+    ImportAnswer answer;
+    answer.files = {library};
+    answer.model.resize(10 << 10);
+    ImportCache(importer.folder(), {library, word}, std::as_bytes(std::span(model)), 48 << 10).keep(answer);
+  };
+  keep("first");
+  const auto add = [&](const char* name, int hours) {
+    const fs::path file = importer.folder() / name;
+    write_text(file.string(), std::string(60 << 10, 'x'));
+    fs::last_write_time(file, fs::last_write_time(file) - std::chrono::hours(hours));
+    return file;
+  };
+  const fs::path notes = add("notes.txt", 1000), upper = add("0123456789ABCDEF", 1000),
+                 hidden = add(".x.1-0.tmp", 1000), unfinished = add(".0123456789abcdef.1-0.tmp", 0),
+                 left = add(".0123456789abcdef.2-0.tmp", 2);
+  for (int i = 0; i < 6; ++i) keep("again " + std::to_string(i));
+  for (const fs::path& file : {notes, upper, hidden, unfinished}) EXPECT_TRUE(fs::exists(file)) << file;
+  EXPECT_FALSE(fs::exists(left)) << "what a killed process left";
+  EXPECT_EQ(importer.entries().size(), 4u + 4u) << "files that are no entries take no room";
 }
 
 TEST(ImportCache, OneHashIsNotOneModel) {
@@ -274,13 +438,14 @@ TEST(ImportCache, OneHashIsNotOneModel) {
   const std::string library = importer.folder().parent_path().parent_path().string() + ".so", a = "model a",
                     b = "model b";
   write_text(library, "library");
-  const ImportCache of_a(importer.folder(), "question", std::as_bytes(std::span(a)));
+  settle();
+  const ImportCache of_a(importer.folder(), {library, "question"}, std::as_bytes(std::span(a)));
   ImportAnswer answer;
   answer.files = {library};
   of_a.keep(answer);
   ASSERT_EQ(importer.entries().size(), 1u);
   const fs::path entry_of_a = importer.entries()[0];
-  const ImportCache of_b(importer.folder(), "question", std::as_bytes(std::span(b)));
+  const ImportCache of_b(importer.folder(), {library, "question"}, std::as_bytes(std::span(b)));
   of_b.keep(answer);
   const auto entries = importer.entries();
   ASSERT_EQ(entries.size(), 2u);

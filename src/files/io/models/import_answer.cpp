@@ -15,7 +15,7 @@ namespace {
 
 using import_frames::Kind;
 
-constexpr std::size_t kMostWarnings = 64, kMostFiles = 1024;
+constexpr std::size_t kMostWarnings = 64;
 /// Share of all progress that the import takes; the rest is for reading the answer.
 constexpr double kImportShare = 0.9;
 
@@ -71,7 +71,7 @@ void ImportReceiver::take(Kind kind, std::string_view text) {
       if (answer.warnings.size() < kMostWarnings) answer.warnings.emplace_back(text);
       return;
     case Kind::file:
-      if (answer.files.size() < kMostFiles) answer.files.emplace_back(text);
+      if (answer.files.size() <= ImportAnswer::most_files) answer.files.emplace_back(text);
       return;
     case Kind::space: answer.space = text; return;
     case Kind::error: source_.fail("", "could not be read: " + printable(text));

@@ -13,9 +13,12 @@
 namespace frontmost {
 
 struct ImportAnswer {
-  std::vector<std::byte> model;              ///< binary glTF
-  std::vector<std::string> warnings, files;  ///< as they are sent
-  std::string space;                         ///< the last one that is sent
+  static constexpr std::size_t most_files = 1024;
+
+  std::vector<std::byte> model;       ///< binary glTF
+  std::vector<std::string> warnings;  ///< as they are sent
+  std::vector<std::string> files;     ///< as they are sent; more than `most_files`: there are others
+  std::string space;                  ///< the last one that is sent
   bool has_ended = false;
 };
 

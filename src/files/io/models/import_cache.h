@@ -2,6 +2,8 @@
 // Answers of frontmost-import that are kept in the user's cache folder, so that a CAD file is tessellated once.
 #pragma once
 
+#include <time.h>
+
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -21,22 +23,25 @@ class ImportCache {
   /// $XDG_CACHE_HOME/frontmost/import or ~/.cache/frontmost/import; empty if the environment names neither.
   [[nodiscard]] static std::filesystem::path folder_of_user();
 
-  /// `question`: the program and its words. `model`, borrowed: the bytes that it reads. An empty folder keeps nothing.
-  ImportCache(std::filesystem::path folder, std::string question, Bytes model, std::uint64_t most = most_bytes);
+  /// `words`: the program and its words. `model`, borrowed: the bytes that it reads. Make it before the program starts.
+  ImportCache(std::filesystem::path folder, const std::vector<std::string>& words, Bytes model,
+              std::uint64_t most = most_bytes);
 
-  /// Returns the frames of an answer to the same question about the same bytes, by the same version of the importer and
-  /// its libraries; nothing if there is none. The frames are as untrusted as those of an importer.
+  /// Returns the frames of an answer to the same words about the same bytes, in an environment that loads the same
+  /// libraries, if the importer's files are unchanged; else nothing. The frames are as untrusted as an importer's.
   [[nodiscard]] std::optional<std::vector<std::byte>> find() const;
-  /// Keeps an answer that names the importer's files; another answer may be different the next time. Whatever prevents
-  /// this is passed over.
+  /// Keeps an answer that names all of the importer's files; another answer may be different the next time. Nothing is
+  /// kept if a file changed after this object was made, or if the folder cannot be used.
   void keep(const ImportAnswer& answer) const;
 
  private:
-  [[nodiscard]] bool has_safe_folder() const;
+  void write(const ImportAnswer& answer) const;
+  [[nodiscard]] std::optional<std::uint64_t> state_of(const std::vector<std::string>& files, bool are_old) const;
   void make_room(std::uint64_t bytes) const;
 
-  std::filesystem::path folder_;
-  std::string question_;
+  std::filesystem::path folder_;  ///< empty: nothing can be kept
+  std::string program_, question_;
+  timespec start_{};
   Bytes model_;
   std::uint64_t most_;
   std::filesystem::path entry_;

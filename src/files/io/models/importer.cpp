@@ -168,10 +168,20 @@ void check(const ImportOptions& options) {
   if (options.bytes < std::uint64_t(1) << 20) fail("bytes", "at least 1048576");
 }
 
-std::string joined_words(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += word + '\0';
-  return text;
+/// The words without the number of threads, which changes no answer. The limit of memory does: OpenCASCADE leaves out
+/// faces for which it finds no memory.
+std::vector<std::string> question_of(std::vector<std::string> words) {
+  words.erase(words.end() - 2);
+  return words;
+}
+
+bool is_valid(const Scene& scene) {
+  try {
+    validate(scene);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 /// The scene of a kept answer. An entry that is broken, whoever wrote it, is as good as none.
@@ -183,8 +193,7 @@ std::optional<Scene> scene_of_kept(const ImportCache& cache, const ModelSource& 
     receiver.take(*frames);
     if (!receiver.answer.has_ended) return std::nullopt;
     Scene scene = scene_of(receiver.answer, source);
-    validate(scene);
-    return scene;
+    return is_valid(scene) ? std::optional(std::move(scene)) : std::nullopt;
   } catch (const Error& error) {
     if (error.code() == ErrorCode::cancelled) throw;
     return std::nullopt;
@@ -201,12 +210,12 @@ Scene read_imported(ModelFormat format, Bytes bytes, const ModelSource& source) 
   words.push_back(format == ModelFormat::foreign ? foreign_suffix(source.name(), bytes) : word_of(format));
   words.push_back(text_of_number(import.tolerance));
   words.push_back(text_of_number(import.angle));
-  // Meshes are read about as fast as answers.
-  const bool is_kept = import.cache && format != ModelFormat::foreign;
-  const ImportCache cache(is_kept ? ImportCache::folder_of_user() : "", joined_words(words), bytes);
-  if (std::optional<Scene> scene = scene_of_kept(cache, source)) return *std::move(scene);
   words.push_back(std::to_string(source.execution().threads));
   words.push_back(std::to_string(import.bytes));
+  // Meshes are read about as fast as answers.
+  const bool is_kept = import.cache && format != ModelFormat::foreign;
+  const ImportCache cache(is_kept ? ImportCache::folder_of_user() : "", question_of(words), bytes);
+  if (std::optional<Scene> scene = scene_of_kept(cache, source)) return *std::move(scene);
   ImportAnswer answer;
   {
     Descriptor input;
@@ -215,7 +224,7 @@ Scene read_imported(ModelFormat format, Bytes bytes, const ModelSource& source) 
     answer = receive(process, import, source);
   }
   Scene scene = scene_of(answer, source);
-  cache.keep(answer);
+  if (is_kept && is_valid(scene)) cache.keep(answer);
   return scene;
 }
 
