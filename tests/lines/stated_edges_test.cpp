@@ -182,6 +182,42 @@ TEST(StatedEdges, CirclesThatTheirEdgesLeaveAreIgnored) {
   }
 }
 
+TEST(StatedEdges, CirclesOfWhichTwoEdgesAreCutAreKept) {
+  // Six sides, of which the middle is 13 % inside the circle. A rim vertex i is number 1 + 2 i.
+  const auto has_circle = [](std::initializer_list<std::uint32_t> cut, double share) {
+    Mesh mesh = disc(6, 2);
+    for (const std::uint32_t i : cut) {
+      const glm::vec3 to = mesh.positions[1 + 2 * ((i + 1) % 6)];
+      glm::vec3& from = mesh.positions[1 + 2 * i];
+      from += (to - from) * float(share);
+    }
+    // Each rim vertex that moved ends the edge before it no longer.
+    std::vector<glm::uvec2> edges;
+    for (std::uint32_t i = 0; i < 6; ++i)
+      if (std::find(cut.begin(), cut.end(), (i + 1) % 6) == cut.end()) edges.push_back(mesh.sharp_edges[i]);
+    mesh.sharp_edges = edges;
+    mesh.edge_circles[0].count = std::uint32_t(edges.size());
+    const Scene scene = scene_of(mesh);
+    const Rounds rounds = find_rounds(Surfaces(scene));
+    return std::any_of(rounds.rounds.begin(), rounds.rounds.end(),
+                       [](const Round& round) { return round.kind == RoundKind::circle && round.radius == 2; });
+  };
+  EXPECT_TRUE(has_circle({}, 0));
+  EXPECT_TRUE(has_circle({0}, 0.5));
+  EXPECT_TRUE(has_circle({0, 3}, 0.5));
+  EXPECT_FALSE(has_circle({0, 2, 4}, 0.5)) << "no section leaves these";
+  EXPECT_FALSE(has_circle({0}, -0.5)) << "outside";
+}
+
+TEST(StatedEdges, CirclesOfPolygonsInsideAreIgnored) {
+  // A hexagon of the inner radius: all of its ends are as far inside as the middles of a circle's chords.
+  const double inner = 2 * std::cos(std::numbers::pi / 6);
+  Mesh mesh = disc(6, 2);
+  for (glm::vec3& p : mesh.positions) p = glm::vec3(3 + (p.x - 3) * inner / 2, 4 + (p.y - 4) * inner / 2, p.z);
+  const Scene scene = scene_of(mesh);
+  for (const Round& round : find_rounds(Surfaces(scene)).rounds) EXPECT_NE(round.radius, 2);
+}
+
 TEST(StatedEdges, WrongOnesAreRefused) {
   const auto refuses = [](const auto& spoil) {
     Scene scene = scene_of(disc(40, 2));

@@ -20,21 +20,23 @@ bool is_before(const glm::uvec2& a, const glm::uvec2& b) { return a.x != b.x ? a
 /// Whether the edge has no length, or an end that is not finite.
 bool is_none(const glm::uvec2& edge) { return edge.x == edge.y || edge.y == no_index; }
 
-/// Whether the ends of the circle's edges lie near the circle. Files may state anything. An edge that a section cuts
-/// has an end on its chord, which may be as far inside as the middle of the longest chord.
+/// Whether the edges have their ends near the circle. Files may state anything. A section cuts an arc at two edges;
+/// each of these keeps one end on the circle, and its other end lies on its chord, inside.
 bool lies_on(const StatedCircle& circle, std::span<const glm::vec3> places) {
-  double longest = 0;
-  for (const glm::uvec2& edge : circle.edges)
-    longest = std::max(longest, glm::distance(glm::dvec3(places[edge.x]), glm::dvec3(places[edge.y])));
-  const double half = std::min(longest / 2, circle.radius);
-  const double inside = circle.radius - std::sqrt(circle.radius * circle.radius - half * half);
+  constexpr int most_cut = 2;
+  const double slack = kOffCircle * circle.radius;
+  int cut = 0;
   return std::all_of(circle.edges.begin(), circle.edges.end(), [&](const glm::uvec2& edge) {
-    const auto is_on = [&](std::uint32_t end) {
+    int inside = 0;
+    for (const std::uint32_t end : {edge.x, edge.y}) {
       const glm::dvec3 out = glm::dvec3(places[end]) - circle.centre;
-      const double height = glm::dot(out, circle.axis), away = glm::length(out - height * circle.axis) - circle.radius;
-      return std::abs(height) + std::max(away, -away - inside) <= kOffCircle * circle.radius;
-    };
-    return is_on(edge.x) && is_on(edge.y);
+      const double height = std::abs(glm::dot(out, circle.axis));
+      const double away = glm::length(out - glm::dot(out, circle.axis) * circle.axis) - circle.radius;
+      if (!(height + away <= slack)) return false;
+      inside += height - away > slack;
+    }
+    cut += inside;
+    return inside < 2 && cut <= most_cut;
   });
 }
 
@@ -75,7 +77,7 @@ StatedEdges::StatedEdges(const Scene& scene, const Buffer<std::uint32_t>& vertic
       for (const glm::uvec2& edge : mesh.sharp_edges) sharp.push_back(welded(edge));
       for (const EdgeCircle& circle : mesh.edge_circles) {
         const std::optional<EdgeCircle> own = transformed(circle, instance.world_from_mesh);
-        if (!own) break;
+        if (!own) break;  // nor is another circle of the instance one
         StatedCircle placed{own->centre, own->axis, own->radius, {}};
         for (std::uint32_t k = circle.first; k < circle.first + circle.count; ++k)
           placed.edges.push_back(welded(mesh.sharp_edges[k]));
