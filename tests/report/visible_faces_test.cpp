@@ -4,8 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <glm/gtc/constants.hpp>
+#include <numeric>
 
-#include "frontmost/report.h"
+#include "frontmost/frontmost.h"
 #include "support/effort.h"
 #include "support/face_oracle.h"
 #include "support/meshes.h"
@@ -281,6 +282,37 @@ TEST(KeptFaces, KeepTheirStatedEdges) {
   ASSERT_EQ(left.edge_circles.size(), 1u);
   EXPECT_EQ(left.edge_circles[0].radius, 2);
   EXPECT_EQ(left.edge_circles[0].first, 1u);
+}
+
+TEST(KeptFaces, OfAMeshThatStatesSmoothSidesAreNotJudgedByAngles) {
+  // The ball's sides meet at angles. Its faces have vertices of their own, as those of CAD files.
+  const Mesh ball = bumpy_ball(8, 0.3, 1);
+  Mesh mesh;
+  for (const glm::uvec3& t : ball.triangles)
+    add_triangle(mesh, ball.positions[t.x], ball.positions[t.y], ball.positions[t.z]);
+  const auto creases = [](const Scene& scene) {
+    const Surfaces surfaces(scene);
+    const Drawing drawing = draw_lines(surfaces, frame(surfaces, 200, 200));
+    return std::count_if(drawing.edges.begin(), drawing.edges.end(),
+                         [](const DrawnEdge& edge) { return edge.kind == EdgeKind::crease; });
+  };
+  std::vector<PrimitiveId> ids(mesh.triangles.size() - 1);
+  std::iota(ids.begin(), ids.end(), PrimitiveId(1));
+  EXPECT_GT(creases(keep_faces(scene_of(mesh), ids)), 0);
+  const glm::uvec3 first = mesh.triangles[0];
+  mesh.smooth_edges = {{first.x, first.y}};
+  EXPECT_EQ(creases(scene_of(mesh)), 0);
+  const Scene kept = keep_faces(scene_of(mesh), ids);
+  validate(kept);
+  EXPECT_EQ(creases(kept), 0);
+  EXPECT_EQ(kept.meshes[0].smooth_edges.size(), 1u);
+  // A sharp edge stays one.
+  const glm::uvec3 last = mesh.triangles.back();
+  mesh.sharp_edges = {{last.x, last.y}};
+  EXPECT_EQ(creases(keep_faces(scene_of(mesh), ids)), creases(scene_of(mesh)));
+  // A smooth edge that is no side covers nothing, before and after.
+  mesh.smooth_edges = {{first.x, last.x}};
+  EXPECT_GT(creases(keep_faces(scene_of(mesh), ids)), 1);
 }
 
 TEST(KeptFaces, ThatAreNotOrTwiceAreRefused) {

@@ -25,25 +25,31 @@ namespace frontmost {
   return circle;
 }
 
-/// Appends the edges and circles of a mesh to another mesh. `taken(edge)` returns an edge by vertices of `to`, or
+/// Appends the edges and circles of a mesh to another mesh. `edge_in_to(edge)` returns an edge by vertices of `to`, or
 /// nothing if the edge is left out. A circle keeps those of its edges that are taken.
-template <class Taken>
-void append_edges(const Mesh& from, const glm::dmat4& to_from_from, const Taken& taken, Mesh& to) {
-  std::vector<std::uint32_t> places;  // of each sharp edge, or of the next one that is taken
+template <class EdgeInTo>
+void append_edges(const Mesh& from, const glm::dmat4& to_from_from, const EdgeInTo& edge_in_to, Mesh& to) {
+  // The new number of each sharp edge; of an edge that is left out, that of the next one that is taken.
+  std::vector<std::uint32_t> new_numbers;
   for (const glm::uvec2& edge : from.sharp_edges) {
-    places.push_back(std::uint32_t(to.sharp_edges.size()));
-    if (const std::optional<glm::uvec2> own = taken(edge)) to.sharp_edges.push_back(*own);
+    new_numbers.push_back(std::uint32_t(to.sharp_edges.size()));
+    if (const std::optional<glm::uvec2> own = edge_in_to(edge)) to.sharp_edges.push_back(*own);
   }
-  places.push_back(std::uint32_t(to.sharp_edges.size()));
+  new_numbers.push_back(std::uint32_t(to.sharp_edges.size()));
   for (const glm::uvec2& edge : from.smooth_edges)
-    if (const std::optional<glm::uvec2> own = taken(edge)) to.smooth_edges.push_back(*own);
+    if (const std::optional<glm::uvec2> own = edge_in_to(edge)) to.smooth_edges.push_back(*own);
   for (const EdgeCircle& circle : from.edge_circles) {
     std::optional<EdgeCircle> own = transformed(circle, to_from_from);
     if (!own) continue;
-    own->first = places[circle.first];
-    own->count = places[circle.first + circle.count] - own->first;
+    own->first = new_numbers[circle.first];
+    own->count = new_numbers[circle.first + circle.count] - own->first;
     if (own->count > 0) to.edge_circles.push_back(*own);
   }
 }
+
+/// Drawings judge no angles of a mesh that states smooth sides of its triangles. `to`, which is what is left of `from`,
+/// states a side that is not sharp as smooth if it would be judged now. Takes n log n for n triangles if no
+/// smooth side is left.
+void keep_covered(const Mesh& from, Mesh& to);
 
 }  // namespace frontmost

@@ -45,6 +45,7 @@ struct ObjectCutter {
     }
     append_edges(
         mesh, instance.world_from_mesh, [&](const glm::uvec2& edge) { return left_of(edge); }, left);
+    keep_covered(mesh, left);
   }
 
   /// The part of a stated edge behind the plane. Sides of triangles are cut at the same point.
@@ -82,8 +83,6 @@ struct ObjectCutter {
     } else {
       add({first, b, c}, material);
       add({first, c, first + 1}, material);
-      // What is left of an object that states smooth edges is not judged by angles either.
-      if (!mesh.smooth_edges.empty()) left.smooth_edges.emplace_back(first, c);
       add_segment(on_b, on_c);
     }
   }

@@ -69,11 +69,12 @@ Mesh kept_mesh(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
   kept.triangles = std::move(positions.triangles);
   std::vector<std::uint32_t> numbers(mesh.positions.size(), no_index);
   for (std::uint32_t i = 0; i < positions.values.size(); ++i) numbers[positions.values[i]] = i;
-  const auto taken = [&](const glm::uvec2& edge) -> std::optional<glm::uvec2> {
+  const auto kept_edge = [&](const glm::uvec2& edge) -> std::optional<glm::uvec2> {
     const glm::uvec2 own(numbers[edge.x], numbers[edge.y]);
     return own.x == no_index || own.y == no_index ? std::nullopt : std::optional(own);
   };
-  append_edges(mesh, glm::dmat4(1), taken, kept);
+  append_edges(mesh, glm::dmat4(1), kept_edge, kept);
+  keep_covered(mesh, kept);
   return kept;
 }
 
