@@ -286,6 +286,45 @@ TEST_F(CadFiles, IgesAndBrepHoldTheSamePlate) {
   }
 }
 
+TEST_F(CadFiles, CavitiesOfIgesStayCavities) {
+  const Scene scene = load(file("hollow.igs"));
+  EXPECT_EQ(scene.instances.size(), 1u);
+  EXPECT_NEAR(volume_of(Surfaces(scene)), 40 * 40 * 40 - 20 * 20 * 20 + 6 * 6 * 6, 0.01);
+  const Section section = cut(Surfaces(scene), {Axis::z, 20});
+  ASSERT_EQ(section.faces.size(), 1u);
+  EXPECT_NEAR(section.faces[0].area, 40 * 40 - 20 * 20 + 6 * 6, 0.001);
+  EXPECT_EQ(section.faces[0].outlines.size(), 3u);
+}
+
+TEST_F(CadFiles, ClosedShellsOfIgesAreOutsideOut) {
+  const Scene two = load(file("two.igs")), filled = load(file("pin.igs"));
+  EXPECT_NEAR(volume_of(Surfaces(two)), 2 * 1000, 1);
+  const double hole = kPi * 36 * 20, pin = kPi * 36 * 9;
+  EXPECT_NEAR(volume_of(Surfaces(filled)), 8000 - hole + pin, 10) << "what fills a hole is no cavity";
+}
+
+TEST_F(CadFiles, OpenShellsOfIgesAreWoundAlike) {
+  for (const char* const name : {"open.igs", "fin.igs"}) {
+    SCOPED_TRACE(name);
+    const Scene scene = load(file(name));
+    const Surfaces surfaces(scene);
+    int outwards = 0, inwards = 0;
+    for (PrimitiveId id = 0; id < surfaces.primitive_count(); ++id) {
+      const auto t = surfaces.corners(id);
+      const glm::dvec3 middle = glm::dvec3(t[0] + t[1] + t[2]) / 3.0;
+      if (std::min(middle.x, middle.y) < -5.1) continue;  // the fin
+      const double out = glm::dot(glm::dvec3(glm::cross(t[1] - t[0], t[2] - t[0])), middle);
+      (out > 0 ? outwards : inwards)++;
+    }
+    EXPECT_EQ(std::min(outwards, inwards), 0) << "wound alike";
+    // Sewing has turned the faces of an open shell like its first one.
+    EXPECT_EQ(outwards + inwards, name == std::string("open.igs") ? 10 : 12);
+    EXPECT_TRUE(inwards == 0 || name == std::string("open.igs")) << "most faces show their outside";
+  }
+  const Scene strip = load(file("moebius.igs"));
+  EXPECT_EQ(triangle_count(strip), 24u) << "which has no two sides";
+}
+
 TEST_F(CadFiles, FacesWithoutTrianglesAreCounted) {
   for (int i = 0; i < 2; ++i) {  // the second time from the cache
     const Scene one = load(file("bare-1.brep")), two = load(file("bare-2.brep"));

@@ -5,11 +5,18 @@
 //   fixture-inch.step   the same in inches
 //   plate.igs, plate.brep, plate-far.step (400 m from zero)
 //   turned.igs          the faces of the plate apart, every second one reversed
+//   hollow.igs          a box of 40 mm with a cavity of 20 mm, in which a box of 6 mm lies; faces apart
+//   two.igs             two boxes of 10 mm, 1 km from zero
+//   pin.igs             a box of 20 mm with a hole, and a pin of the same radius in it that ends inside the hole
+//   open.igs            a box of 10 mm without its last face, two faces inside out
+//   fin.igs             the box with its last face, and with a fin at one of its edges
+//   moebius.igs         a strip that is twisted once
 //   bare-1.brep, bare-2.brep (a pin, and one or two faces whose outlines are open)
 //   apart.step          the pin alone, in a file of its own, apart-pin.stp
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
@@ -31,6 +38,7 @@
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
+#include <cmath>
 #include <gp_Ax2.hxx>
 #include <gp_Pln.hxx>
 #include <string>
@@ -113,6 +121,91 @@ TopoDS_Shape turned_faces() {
   return faces;
 }
 
+/// Adds the faces of a shape to a compound; of these, `turns(i)` are reversed.
+template <class Turns>
+void add_faces(const TopoDS_Shape& shape, const Turns& turns, TopoDS_Compound& faces) {
+  int i = 0;
+  for (TopExp_Explorer all(shape, TopAbs_FACE); all.More(); all.Next(), ++i)
+    BRep_Builder().Add(faces, turns(i) ? all.Current().Reversed() : all.Current());
+}
+
+TopoDS_Compound nothing() {
+  TopoDS_Compound compound;
+  BRep_Builder().MakeCompound(compound);
+  return compound;
+}
+
+TopoDS_Shape cube(double at, double size) {
+  return BRepPrimAPI_MakeBox(gp_Pnt(at, at, at), gp_Pnt(at + size, at + size, at + size)).Shape();
+}
+
+TopoDS_Shape hollow() {
+  TopoDS_Compound faces = nothing();
+  add_faces(
+      cube(0, 40), [](int i) { return i % 2 == 0; }, faces);
+  add_faces(
+      cube(10, 20), [](int i) { return i % 3 == 0; }, faces);
+  add_faces(
+      cube(17, 6), [](int) { return true; }, faces);
+  return faces;
+}
+
+TopoDS_Shape two() {
+  TopoDS_Compound faces = nothing();
+  add_faces(
+      cube(1e6, 10), [](int) { return true; }, faces);
+  add_faces(
+      cube(1e6 + 30, 10), [](int) { return false; }, faces);
+  return faces;
+}
+
+TopoDS_Shape pin_in_hole() {
+  TopoDS_Compound faces = nothing();
+  const TopoDS_Shape hole = BRepPrimAPI_MakeCylinder(upright(10, 10, -1), kHole, 22).Shape();
+  add_faces(
+      BRepAlgoAPI_Cut(cube(0, 20), hole).Shape(), [](int) { return false; }, faces);
+  add_faces(
+      BRepPrimAPI_MakeCylinder(upright(10, 10, 3), kHole, 9).Shape(), [](int) { return true; }, faces);
+  return faces;
+}
+
+/// The first `count` faces of a box of 10 mm about zero. Planes of the first two have their normals inside, because
+/// IGES keeps no other orientation of faces.
+TopoDS_Compound sides_of_box(int count) {
+  TopoDS_Compound faces = nothing();
+  const gp_XYZ normals[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, -1}, {0, 0, 1}};
+  for (int i = 0; i < count; ++i) {
+    const gp_Pln plane(gp_Pnt(normals[i] * 5), gp_Dir(normals[i] * (i < 2 ? -1 : 1)));
+    BRep_Builder().Add(faces, BRepBuilderAPI_MakeFace(plane, -5, 5, -5, 5).Face());
+  }
+  return faces;
+}
+
+TopoDS_Shape box_with_fin() {
+  TopoDS_Compound faces = sides_of_box(6);
+  // From the edge at x = -5, y = -5.
+  const double half = 5 * std::sqrt(2.0);
+  const gp_Pln fin(gp_Ax3(gp_Pnt(-7.5, -7.5, 0), gp_Dir(1, -1, 0), gp_Dir(0, 0, 1)));
+  BRep_Builder().Add(faces, BRepBuilderAPI_MakeFace(fin, -5, 5, -half / 2, half / 2).Face());
+  return faces;
+}
+
+TopoDS_Shape moebius_strip() {
+  TopoDS_Compound faces = nothing();
+  constexpr int sides = 12;
+  const auto at = [](int i, double across) {
+    const double around = 2 * M_PI * i / sides, radius = 20 + across * std::cos(around / 2);
+    return gp_Pnt(radius * std::cos(around), radius * std::sin(around), across * std::sin(around / 2));
+  };
+  for (int i = 0; i < sides; ++i) {
+    const gp_Pnt a = at(i, -5), b = at(i, 5), c = at(i + 1, -5), d = at(i + 1, 5);
+    for (const TopoDS_Wire& wire :
+         {BRepBuilderAPI_MakePolygon(a, b, c, true).Wire(), BRepBuilderAPI_MakePolygon(b, d, c, true).Wire()})
+      BRep_Builder().Add(faces, BRepBuilderAPI_MakeFace(wire).Face());
+  }
+  return faces;
+}
+
 /// A part of a pin and of faces that no triangles can fill.
 bool write_bare(const std::string& path, int faces) {
   TopoDS_Compound part, file;
@@ -163,5 +256,8 @@ int main(int, char** words) {
     return iges.AddShape(shape) && iges.Write((folder + name).c_str());
   };
   is_written = is_written && write_iges(plate(), "plate.igs") && write_iges(turned_faces(), "turned.igs");
+  is_written = is_written && write_iges(hollow(), "hollow.igs") && write_iges(two(), "two.igs") &&
+               write_iges(pin_in_hole(), "pin.igs") && write_iges(sides_of_box(5), "open.igs") &&
+               write_iges(box_with_fin(), "fin.igs") && write_iges(moebius_strip(), "moebius.igs");
   return is_written && BRepTools::Write(plate(), (folder + "plate.brep").c_str()) ? 0 : 1;
 }
