@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //   mesh
-//     primitives[0 ...]   triangles, one primitive for each colour   |
-//     primitives[...]     lines: sharp edges, with their circles      | indices into the vertices of the part
-//     primitives[...]     lines: smooth edges                        |
+//     primitives[0 ...]   triangles, one primitive for each colour  |
+//     primitives[...]     lines: sharp edges, with their circles    | indices into the vertices of the part
+//     primitives[...]     lines: smooth edges                       |
 #include "import/glb.h"
 
 #include <algorithm>

@@ -45,6 +45,29 @@ double metres_of(const aiScene& scene, const std::string& suffix) {
   return std::isfinite(centimetres) && centimetres > 0 ? centimetres / 100 : 0;
 }
 
+/// Whether an AMF file has a turn (rx, ry or rz) that is not 0. `text`: of the whole file.
+bool has_turns(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\n";
+  for (std::size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', at + 1)) {
+    std::string_view tag = text.substr(at);
+    if (tag.starts_with("<!--")) {
+      at = text.find("-->", at);
+      if (at == std::string_view::npos) return false;
+      continue;
+    }
+    if (!tag.starts_with("<rx") && !tag.starts_with("<ry") && !tag.starts_with("<rz")) continue;
+    tag.remove_prefix(3);
+    const std::size_t end = tag.find('>');
+    if (end == std::string_view::npos || (end > 0 && blanks.find(tag[0]) == std::string_view::npos)) continue;
+    tag.remove_prefix(std::min(tag.size(), tag.find_first_not_of(blanks, end + 1)));
+    if (tag.starts_with('+')) tag.remove_prefix(1);
+    double degrees = 0;
+    std::from_chars(tag.data(), tag.data() + tag.size(), degrees);
+    if (degrees != 0) return true;
+  }
+  return false;
+}
+
 /// Opens no files that a model names: textures are left to the caller, and nothing else is read.
 class NoFiles : public Assimp::IOSystem {
  public:
@@ -71,8 +94,7 @@ void read_polygons(std::string_view bytes, const std::string& suffix, Answer& an
   if (scene == nullptr) throw Unreadable(importer.GetErrorString());
   // assimp invents names for files in memory and for roots.
   if (std::string_view(scene->mRootNode->mName.C_Str()).starts_with("$")) scene->mRootNode->mName = "";
-  const auto turns = [&](const char* tag) { return bytes.find(tag) != std::string_view::npos; };
-  if (suffix == "amf" && (turns("<rx>") || turns("<ry>") || turns("<rz>")))
+  if (suffix == "amf" && has_turns(bytes))
     answer.warning("objects that the file turns stand at wrong places, because assimp does not turn those of AMF");
   answer.progress(0.7);
   answer.space(metres_of(*scene, suffix), up_of(*scene, suffix));

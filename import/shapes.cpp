@@ -48,12 +48,12 @@ namespace frontmost::import {
 namespace {
 
 constexpr double kShareOfDiagonal = 0.0005;
-constexpr double kSmooth = 0.99985;    // the cosine of 1 degree
-constexpr double kSewn = 1e-5;         // share of the diagonal: edges of faces that lie this near are one edge
-constexpr double kOnCircle = 2e-5;     // share of the radius by which a curve may leave its circle
-constexpr int kCirclePoints = 17;      // points of a curve that are held against a circle
-constexpr double kWidestCircle = 1e4;  // diagonals: a circle of a greater radius counts as a line
-constexpr double kZero = 1e-12;        // diagonals: nearer to a plane through zero than floats are to each other
+constexpr double kSmooth = 0.99985;       // the cosine of 1 degree
+constexpr double kSewn = 1e-5;            // share of the diagonal: edges of faces that lie this near are one edge
+constexpr double kOnCircle = 2e-5;        // share of the radius by which a curve may leave its circle
+constexpr int kCirclePoints = 17;         // points of a curve that are held against a circle
+constexpr double kWidestCircle = 1e4;     // diagonals: a circle of a greater radius counts as a line
+constexpr double kRoundedToZero = 1e-12;  // share of the diagonal: a coordinate below this is rounding noise
 constexpr double kReadShare = 0.3, kTransferShare = 0.4;  // of all time
 
 /// Tells the progress of OpenCASCADE as a part of all progress.
@@ -206,7 +206,7 @@ class PartMaker {
       const gp_Dir n = face.NormalTransformed(i);
       for (int axis = 1; axis <= 3; ++axis) {
         // Faces that meet at 0 have coordinates of 1e-16, which differ as floats.
-        const bool is_zero = std::abs(p.Coord(axis)) < kZero * diagonal_;
+        const bool is_zero = std::abs(p.Coord(axis)) < kRoundedToZero * diagonal_;
         part_.positions.push_back(is_zero ? 0 : float(p.Coord(axis) * scale_));
         part_.normals.push_back(float(n.Coord(axis)));
       }
@@ -384,7 +384,7 @@ void read_shapes(const std::string& path, std::string_view format, const Tessell
   Model model;
   take_parts(document, tessellation, answer, model);
   if (document.names_files)
-    answer.warning("parts in other files are missing, unless the model names these files by absolute paths");
+    answer.warning("the file names other files: parts in these are read only if their paths are absolute");
   else
     answer.files();
   answer.space(document.has_unit ? document.millimetres / 1000 : 0, "z");

@@ -76,8 +76,9 @@ constexpr Option view_options[] = {
        s.load.import.bytes = std::uint64_t(g.number({0.1, 4096}) * 0x1p30);
      }},
     {"no-cache", 0, "",
-     "STEP, IGES, BREP: neither keep triangles in ~/.cache/frontmost nor take them from there; by default a file that "
-     "was read before is quick to read.",
+     "STEP, IGES, BREP: neither keep a copy of the file and its triangles in $XDG_CACHE_HOME/frontmost/import (else "
+     "~/.cache/frontmost/import) nor take them from there; by default a file that was read before is "
+     "quick to read.",
      Group::model, for_every_model, [](Settings& s, const Given&) { s.load.import.cache = false; }},
 
     {"view", 0, "front|back|left|right|top|bottom|iso",

@@ -41,8 +41,9 @@ struct ImportOptions {
   double angle = 0.20943951023931953;  ///< radians between the normals of neighbouring triangles, above 0; 12 degrees
   double seconds = 600;                ///< greatest time, above 0
   std::uint64_t bytes = std::uint64_t(8) << 30;  ///< greatest size of the process's memory
-  /// Whether triangles of STEP, IGES and BREP are kept in $XDG_CACHE_HOME/frontmost (else ~/.cache/frontmost), and
-  /// taken from there the next time: at most 1 GiB. The least recently used ones go.
+  /// Whether a copy of a STEP, IGES or BREP file and its triangles are kept in $XDG_CACHE_HOME/frontmost/import (else
+  /// ~/.cache/frontmost/import), and taken from there the next time. The folder holds 1 GiB at most; the entries used
+  /// least recently are deleted first.
   bool cache = true;
 };
 

@@ -203,9 +203,10 @@ def load(source: Path | bytes, *, name: str = "memory", up: Up | None = None, fo
     name: what messages call bytes. up, format: None takes the file's. allow_outside: folders in which, or below which,
     a scene file may name models, besides its own. mesh_tolerance: greatest distance of triangles from the surfaces of
     STEP, IGES and BREP, in millimetres; 0: 0.05 % of the diagonal. mesh_angle: greatest angle between the normals of
-    neighbours, in degrees. import_seconds: greatest time of frontmost-import. cache: whether triangles of STEP, IGES
-    and BREP are kept in ~/.cache/frontmost, and taken from there the next time. Raises Error with the file, the place
-    and the reason: file_unreadable, file_malformed, unsupported, limit_exceeded.
+    neighbours, in degrees. import_seconds: greatest time of frontmost-import. cache: whether a copy of a STEP, IGES
+    or BREP file and its triangles are kept in $XDG_CACHE_HOME/frontmost/import (else ~/.cache/frontmost/import), and
+    taken from there the next time. Raises Error with the file, the place and the reason: file_unreadable,
+    file_malformed, unsupported, limit_exceeded.
     """
 
 def builtin(name: str) -> Scene:

@@ -190,22 +190,32 @@ TEST_P(ForeignCrane, ArrivesWithPlacesNamesAndColours) {
   EXPECT_NEAR(volume_of(surfaces), (8 + 64) * std::pow(crane.scale, 3), 1e-4) << "outside out";
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Formats, ForeignCrane,
-    testing::Values(Crane{"3ds", z_to_y}, Crane{"ac", as_is}, Crane{"amf", as_is, Axis::y, {}, 1, "0", "1"},
-                    Crane{"dae", z_to_y, Axis::y, 1, 0.0254},  // assimp numbers the colours of DXF in its own way.
-                    Crane{"dxf", z_to_y, Axis::y, {}, 1, "base", "jib", false}, Crane{"fbx", as_is, Axis::z, 0.0254},
-                    Crane{"lwo", z_back}, Crane{"x", z_back}, Crane{"x3d", as_is}),
-    [](const auto& crane) { return std::string(crane.param.suffix); });
+INSTANTIATE_TEST_SUITE_P(Formats, ForeignCrane,
+                         testing::Values(Crane{"3ds", z_to_y}, Crane{"ac", as_is},
+                                         Crane{"amf", as_is, Axis::y, {}, 1, "0", "1"},
+                                         Crane{"dae", z_to_y, Axis::y, 1, 0.0254},
+                                         // assimp numbers the colours of DXF in its own way.
+                                         Crane{"dxf", z_to_y, Axis::y, {}, 1, "base", "jib", false},
+                                         Crane{"fbx", as_is, Axis::z, 0.0254}, Crane{"lwo", z_back}, Crane{"x", z_back},
+                                         Crane{"x3d", as_is}),
+                         [](const auto& crane) { return std::string(crane.param.suffix); });
 
 TEST(Import, TurnedObjectsOfAmfAreAWarning) {
   const Importer importer(FRONTMOST_IMPORT_BUILT);
   const ScratchFolder folder;
-  std::string text = read_text(FRONTMOST_MESHES "/crane.amf");
-  text.insert(text.find("</instance>"), "<rz>90</rz>");
-  write_text(folder.file("crane.amf"), text);
-  EXPECT_THAT(load(folder.file("crane.amf")).warnings,
-              testing::ElementsAre(HasSubstr("objects that the file turns stand at wrong places")));
+  const std::string text = read_text(FRONTMOST_MESHES "/crane.amf");
+  const auto warnings_with = [&](const std::string& turn) {
+    std::string turned = text;
+    turned.insert(turned.find("</instance>"), turn);
+    write_text(folder.file("crane.amf"), turned);
+    return load(folder.file("crane.amf")).warnings;
+  };
+  for (const char* const turn : {"<rz>90</rz>", "<rx >\n -1e-3 </rx >", "<!-- <rx> --><ry>+45</ry>"})
+    EXPECT_THAT(warnings_with(turn),
+                testing::ElementsAre(HasSubstr("objects that the file turns stand at wrong places")))
+        << turn;
+  for (const char* const turn : {"<rx>0</rx>", "<ry> -0.0 </ry>", "<!-- <rx>90</rx> -->", "<rz></rz>"})
+    EXPECT_THAT(warnings_with(turn), testing::IsEmpty()) << turn;
 }
 
 #endif
@@ -374,7 +384,8 @@ TEST_F(CadFiles, APartInAnotherFileIsNeitherKeptNorForgotten) {
   const Scene scene = place_pin(folder.file("apart-pin.stp"));
   EXPECT_EQ(scene.instances.size(), 1u);
   EXPECT_THAT(scene.warnings,
-              testing::ElementsAre(HasSubstr("parts in other files are missing, unless the model names")));
+              testing::ElementsAre(
+                  HasSubstr("the file names other files: parts in these are read only if their paths are absolute")));
   EXPECT_TRUE(importer_.entries().empty()) << "the other file may change";
   EXPECT_THAT(error_of(file("apart.step")), HasSubstr("the file has no shapes"));
 }
