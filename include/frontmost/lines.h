@@ -107,8 +107,8 @@ struct Drawing {
                                  const Execution& execution = {});
 
 /// Draws lines of the same surfaces in one view after another. The drawer keeps shared vertices, adjacency and
-/// intersections, which are the same in every view. Memory: 40 bytes a triangle and 80 a segment of an intersection, and
-/// the room of the first drawing, up to 28 MiB. Not for several threads at once.
+/// intersections, which are the same in every view. Memory: 40 bytes a triangle and 80 a segment of an intersection,
+/// and the room of the first drawing, up to 28 MiB. Not for several threads at once.
 class LineDrawer {
  public:
   /// Borrows the surfaces, which must outlive the drawer and not change.
@@ -397,8 +397,8 @@ struct CircleArc {
 
 struct Rounds {
   std::vector<Round> rounds;
-  /// For each round, the triangles with an edge on its circle, or the triangles of its surface; then those of the flats.
-  /// Rounds and flats come in order, and the triangles of one ascend.
+  /// For each round, the triangles with an edge on its circle, or the triangles of its surface; then those of the
+  /// flats. Rounds and flats come in order, and the triangles of one ascend.
   std::vector<PrimitiveId> triangles;
   /// Cylinders of 7 to 17 sides with a sharp rim at either end. They count as polygons: nothing is drawn for them.
   std::vector<Round> prisms;

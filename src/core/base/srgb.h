@@ -43,8 +43,8 @@ extern const std::array<float, 256> srgb8_linears;
 [[nodiscard]] std::uint16_t srgb16_of_linear(float linear);
 [[nodiscard]] float linear_of_srgb16(std::uint16_t value);
 
-/// The linear value of an sRGB value, which is rounded to 16 bits. Values outside [0, 1] are clamped. NaN gives 1, so that an
-/// undefined colour of a file changes nothing.
+/// The linear value of an sRGB value, which is rounded to 16 bits. Values outside [0, 1] are clamped. NaN gives 1, so
+/// that an undefined colour of a file changes nothing.
 [[nodiscard]] float linear_of_srgb(float srgb);
 
 }  // namespace frontmost

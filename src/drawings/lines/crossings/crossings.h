@@ -45,7 +45,8 @@ struct CrossedPairs {
 [[nodiscard]] CrossedPairs find_crossed_pairs(const WeldedMesh& mesh, const Features& features,
                                               const Execution& execution);
 
-/// The segments of the pairs and those of add_contacts(), sorted by their ends, each once. O(segments + contacts log contacts).
+/// The segments of the pairs and those of add_contacts(), sorted by their ends, each once. O(segments + contacts log
+/// contacts).
 [[nodiscard]] std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features,
                                                    const CrossedPairs& pairs, const Execution& execution);
 
