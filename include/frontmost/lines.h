@@ -161,7 +161,8 @@ struct StrokeOptions {
   /// True, for plotters: strokes whose ends meet are joined, and each begins as near as possible to the end of the one
   /// before. False: strokes come in the order of their parts.
   bool nearest_first = false;
-  /// Pixels, 0 to 100: with `nearest_first`, ends of two strokes that are at most this far apart meet.
+  /// Pixels, 0 to 100: ends of two strokes that are at most this far apart are joined; without `nearest_first`, only if
+  /// the strokes go on within 30 degrees.
   double joining = 0.01;
   /// Pixels, 0 to 1000: how far ink reaches from strokes of the given class, half the width of their pen; 0 for dashed
   /// strokes. A stroke is left out if its centre line lies in the ink of longer strokes of its class, or of strokes of

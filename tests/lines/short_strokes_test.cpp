@@ -30,11 +30,12 @@ class Sketch {
     }
     return *this;
   }
-  [[nodiscard]] Strokes strokes(double shortest = kShortest, bool by_kind = false) const {
+  [[nodiscard]] Strokes strokes(double shortest = kShortest, bool by_kind = false, double joining = 0.01) const {
     const Scene scene = scene_of({});
     StrokeOptions options;
     options.by_kind = by_kind;
     options.shortest = shortest;
+    options.joining = joining;
     return frontmost::chain_strokes(Surfaces(scene), drawing_, options);
   }
 
@@ -113,7 +114,7 @@ TEST(Strokes, GoOnThroughJunctions) {
   EXPECT_EQ(count({{10, 50}, {90, 50}, {50, 90}}), 2u);
   EXPECT_EQ(count({{10, 50}, {90, 50}, {50, 90}, {50, 10}}), 2u);
   EXPECT_EQ(count({{10, 50}, {90, 58}, {90, 52}}), 2u) << "the straighter one";
-  EXPECT_EQ(count({{10, 50}, {90, 62}, {50, 90}}), 3u) << "17 degrees";
+  EXPECT_EQ(count({{10, 50}, {90, 80}, {50, 90}}), 3u) << "37 degrees";
   EXPECT_EQ(count({{50, 10}, {85, 70}, {15, 70}}), 3u) << "the corner of a cube";
   std::vector<glm::dvec2> star;
   for (int i = 0; i < 8; ++i) star.emplace_back(50 + 40 * std::cos(i * 0.7854), 50 + 40 * std::sin(i * 0.7854));
@@ -125,6 +126,17 @@ TEST(Strokes, GoOnThroughJunctions) {
   mixed.add(EdgeKind::crease, {{10, 50}, {50, 50}}).add(EdgeKind::crease, {{50, 50}, {90, 50}});
   mixed.add(EdgeKind::crease, {{50, 50}, {50, 90}}, true);
   EXPECT_EQ(mixed.strokes(0).strokes.size(), 2u);
+}
+
+TEST(Strokes, GoOnAcrossGaps) {
+  const auto count = [](const std::vector<glm::dvec2>& one, const std::vector<glm::dvec2>& other, double joining) {
+    return Sketch().add(EdgeKind::crease, one).add(EdgeKind::crease, other).strokes(0, false, joining).strokes.size();
+  };
+  EXPECT_EQ(count({{10, 50}, {50, 50}}, {{52, 50}, {90, 50}}, 3), 1u);
+  EXPECT_EQ(count({{10, 50}, {50, 50}}, {{52, 50}, {90, 50}}, 1.9), 2u) << "too far";
+  EXPECT_EQ(count({{10, 50}, {50, 50}}, {{90, 68}, {52, 51}}, 3), 1u) << "24 degrees";
+  EXPECT_EQ(count({{10, 50}, {50, 50}}, {{52, 50}, {90, 80}}, 3), 2u) << "38 degrees";
+  EXPECT_EQ(count({{10, 50}, {50, 50}}, {{10, 52}, {50, 52}}, 3), 2u) << "beside each other";
 }
 
 TEST(ShortStrokes, OfOneKindLinkOthers) {

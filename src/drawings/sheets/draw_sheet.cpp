@@ -284,8 +284,10 @@ StrokeOptions stroke_options(const PlannedView& view, const SheetOptions& option
   strokes.tolerance = std::clamp(stroke_tolerance / millimetres, 1e-4, 1.0);
   strokes.shortest = std::min(shortest_stroke(options) / millimetres, 1e4);
   strokes.arc_tolerance = std::min(paper_tolerance / millimetres, 100.0);
+  // The round ends of two strokes cover the gap between them.
+  const double gap = options.plot ? plotted_gap : pens_of(options).seen.width / 2;
+  strokes.joining = std::min(gap / millimetres, 100.0);
   if (!options.plot) return strokes;
-  strokes.joining = std::min(plotted_gap / millimetres, 100.0);
   strokes.ink_reach = [pens = pens_of(options), millimetres](const Stroke& stroke) {
     const Pen& pen = pen_of(stroke, pens);
     return pen.dashes.empty() ? std::min(pen.width / 2 / millimetres, 1000.0) : 0.0;

@@ -141,14 +141,27 @@ void for_each_rank(const std::vector<Chain>& chains, const Visit& visit) {
   }
 }
 
+/// The direction in which a chain goes on beyond an end, from a point at least `back` before it.
+glm::dvec2 direction_beyond(const std::vector<Chain>& chains, std::uint32_t number, double back) {
+  const std::vector<glm::dvec2>& points = chains[number / 2].points;
+  const auto along = [&](const auto& begin, const auto& end) {
+    glm::dvec2 way(0);
+    for (auto p = begin; p != end && glm::dot(way, way) <= back * back; ++p) way = *begin - *p;
+    return way / std::max(glm::length(way), std::numeric_limits<double>::min());
+  };
+  return number % 2 == 0 ? along(points.begin(), points.end()) : along(points.rbegin(), points.rend());
+}
+
+constexpr double goes_on = 0.866;  // the cosine of 30 degrees
+
 /// Which ends are joined. Paths that are joined so far have two free ends each.
 ///
 /// Each end takes the nearest free end of another path. Only then are paths closed, because a closed path would leave
 /// out others that touch it.
 class EndPairs {
  public:
-  EndPairs(const std::vector<Chain>& chains, double apart)
-      : chains_(chains), apart_(apart), partner(2 * chains.size(), no_index) {
+  EndPairs(const std::vector<Chain>& chains, double apart, bool any_direction)
+      : chains_(chains), apart_(apart), any_direction_(any_direction), partner(2 * chains.size(), no_index) {
     for (std::uint32_t end = 0; end < partner.size(); ++end) opposite_.push_back(end ^ 1);
   }
 
@@ -163,7 +176,7 @@ class EndPairs {
       if (!is_free(end)) continue;
       left.remove(end);
       const std::uint32_t other = left.nearest(place(chains_, end), apart_ * apart_, opposite_[end]);
-      if (other == no_end) continue;
+      if (other == no_end || !may_join(end, other)) continue;
       left.remove(other);
       join(end, other);
     }
@@ -171,13 +184,18 @@ class EndPairs {
       const std::uint32_t other = opposite_[end];
       // A straight line is not closed, however short.
       if (!is_free(end) || (other == (end ^ 1) && chains_[end / 2].points.size() < 3)) continue;
-      if (glm::distance(place(chains_, end), place(chains_, other)) <= apart_) join(end, other);
+      if (glm::distance(place(chains_, end), place(chains_, other)) <= apart_ && may_join(end, other)) join(end, other);
     }
   }
 
  private:
   [[nodiscard]] bool is_free(std::uint32_t end) const {
     return !chains_[end / 2].is_closed && partner[end] == no_index;
+  }
+
+  [[nodiscard]] bool may_join(std::uint32_t a, std::uint32_t b) const {
+    return any_direction_ ||
+           glm::dot(direction_beyond(chains_, a, apart_), direction_beyond(chains_, b, apart_)) <= -goes_on;
   }
 
   void join(std::uint32_t a, std::uint32_t b) {
@@ -190,6 +208,7 @@ class EndPairs {
 
   const std::vector<Chain>& chains_;
   const double apart_;
+  const bool any_direction_;
   std::vector<std::uint32_t> opposite_;  ///< by free end: the other free end of its path
 
  public:
@@ -204,8 +223,9 @@ void append(const std::vector<glm::dvec2>& from, std::vector<glm::dvec2>& to) {
 
 }  // namespace
 
-std::vector<Chain> joined_ends(std::vector<Chain> chains, double apart, const Execution& execution) {
-  EndPairs pairs(chains, apart);
+std::vector<Chain> joined_ends(std::vector<Chain> chains, double apart, bool any_direction,
+                               const Execution& execution) {
+  EndPairs pairs(chains, apart, any_direction);
   for_each_rank(chains, [&](std::size_t first, std::size_t last) { pairs.join(first, last, execution); });
   std::vector<Chain> joined;
   for_each_chain(pairs.partner, [&](const std::vector<std::uint32_t>& ends, bool is_closed) {

@@ -105,9 +105,11 @@ void find_arcs(Chain& chain, double tolerance);
 [[nodiscard]] std::vector<Chain> uncovered(std::vector<Chain> chains, std::span<const double> reaches,
                                            const Execution& execution);
 
-/// Joins chains of one rank whose ends are at most `apart` pixels from each other, by a straight line. Chains are
-/// sorted by rank, before and after. Precondition: no arcs.
-[[nodiscard]] std::vector<Chain> joined_ends(std::vector<Chain> chains, double apart, const Execution& execution);
+/// Joins chains of one rank whose ends are at most `apart` pixels from each other, by a straight line; without
+/// `any_direction`, only chains that go on within 30 degrees. Chains are sorted by rank, before and after.
+/// Precondition: no arcs.
+[[nodiscard]] std::vector<Chain> joined_ends(std::vector<Chain> chains, double apart, bool any_direction,
+                                             const Execution& execution);
 
 /// The order of drawing, rank by rank, as the ends at which the pen begins: 2 i where chain i begins, 2 i + 1 where it
 /// ends. The next end is the one nearest to the pen. Precondition: chains are sorted by rank.

@@ -281,7 +281,7 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
   const IeeeScope ieee;
   report_progress(execution, "strokes", 0);
   const Ranked parts(surfaces, drawing, options);
-  // Straight pairs would leave more strokes than joined_ends(), which pairs the ends of all chains for plotters.
+  // For plotters, straight pairs would leave more strokes than joined_ends(), which then pairs ends of any direction.
   std::vector<Chain> chains = chained(draw_once(parts.segments, options.apart, execution), !options.nearest_first);
   // Where two tessellations of one circle pass through each other, chains are left over that are seen as points.
   std::erase_if(chains, [&](const Chain& chain) {
@@ -297,7 +297,7 @@ Strokes chain_strokes(const Surfaces& surfaces, const Drawing& drawing, const St
     result.covered -= chains.size();
     report_progress(execution, "strokes", 0.7);
   }
-  if (options.nearest_first) chains = joined_ends(std::move(chains), options.joining, execution);
+  chains = joined_ends(std::move(chains), options.joining, options.nearest_first, execution);
   report_progress(execution, "strokes", 0.75);
   parallel_for(execution, chains.size(), 256, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
