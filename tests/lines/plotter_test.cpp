@@ -11,6 +11,7 @@
 #include "frontmost/lines.h"
 #include "support/meshes.h"
 #include "support/random_scene.h"
+#include "support/stroke_length.h"
 
 namespace frontmost::test {
 namespace {
@@ -56,14 +57,6 @@ class Plot {
   Drawing drawing_;
 };
 
-double ink_of(const Strokes& all) {
-  double length = 0;
-  for (const Stroke& stroke : all.strokes)
-    for (std::uint32_t i = 0; i + (stroke.is_closed ? 0 : 1) < stroke.count; ++i)
-      length += glm::distance(all.points[stroke.first + i], all.points[stroke.first + (i + 1) % stroke.count]);
-  return length;
-}
-
 TEST(PlotterJoins, EndsThatNearlyMeet) {
   // Three sides of a square, with gaps of 0.3 pixels at two corners; one end of the first is drawn backwards.
   Plot plot;
@@ -73,7 +66,7 @@ TEST(PlotterJoins, EndsThatNearlyMeet) {
   ASSERT_EQ(all.strokes.size(), 1u);
   EXPECT_FALSE(all.strokes[0].is_closed);
   // The lines stay where they are; the pen also draws the gaps.
-  EXPECT_NEAR(ink_of(all), 100 + 99.7 + 99.7 + 2 * 0.3, 1e-9);
+  EXPECT_NEAR(total_length(all), 100 + 99.7 + 99.7 + 2 * 0.3, 1e-9);
   plot.add({{0, 0.2}, {0, 100}});
   const Strokes square = plot.strokes(0.31);
   ASSERT_EQ(square.strokes.size(), 1u);
@@ -89,7 +82,7 @@ TEST(PlotterJoins, LeaveAsFewStrokesAsThereCanBe) {
       plot.add({{10 * k, 10 * i}, {10 * k + 10, 10 * i}});
     }
   EXPECT_EQ(plot.strokes(0).strokes.size(), 6u);
-  EXPECT_NEAR(ink_of(plot.strokes(0)), 400, 1e-9);
+  EXPECT_NEAR(total_length(plot.strokes(0)), 400, 1e-9);
   // Two triangles that share a vertex are one stroke.
   Plot triangles;
   triangles.add({{0, 0}, {10, 0}}).add({{10, 0}, {5, 5}}).add({{5, 5}, {0, 0}});
@@ -110,7 +103,7 @@ TEST(PlotterInk, LeavesOutWhatLiesInTheInkOfALongerStroke) {
   const Strokes all = plot.strokes(0, 2);
   EXPECT_EQ(all.strokes.size(), 1u);
   EXPECT_EQ(all.covered, 1u);
-  EXPECT_NEAR(ink_of(all), 100, 1e-9);
+  EXPECT_NEAR(total_length(all), 100, 1e-9);
 }
 
 TEST(PlotterInk, KeepsStrokesThatProtrude) {
@@ -162,7 +155,7 @@ TEST(PlotterInk, OfShortLinksStaysIfItClosesAGap) {
   gap.add({{0, 0}, {50, 0}}).add({{50, 0}, {53, 0}}).add({{53, 0}, {100, 0}});
   gap.add({{50, 0}, {50, -40}}).add({{53, 0}, {53, -40}});
   EXPECT_EQ(gap.strokes(0, 2).covered, 0u);
-  EXPECT_NEAR(ink_of(gap.strokes(0, 2)), 180, 1e-9);
+  EXPECT_NEAR(total_length(gap.strokes(0, 2)), 180, 1e-9);
   // All ink of the bar of an H lies in its two sides, if they are so near to each other.
   for (const auto& [width, covered] : {std::pair(3.9, 1u), std::pair(4.1, 0u)}) {
     Plot letter;

@@ -7,6 +7,7 @@
 
 #include "frontmost/lines.h"
 #include "support/random_scene.h"
+#include "support/stroke_length.h"
 
 namespace frontmost::test {
 namespace {
@@ -43,21 +44,13 @@ class Sketch {
   Drawing drawing_;
 };
 
-double length_of(const Strokes& all) {
-  double length = 0;
-  for (const Stroke& stroke : all.strokes)
-    for (std::uint32_t i = 0; i + (stroke.is_closed ? 0 : 1) < stroke.count; ++i)
-      length += glm::distance(all.points[stroke.first + i], all.points[stroke.first + (i + 1) % stroke.count]);
-  return length;
-}
-
 TEST(ShortStrokes, InTheAirAreLeftOut) {
   for (const EdgeKind kind : {EdgeKind::silhouette, EdgeKind::boundary, EdgeKind::crease, EdgeKind::intersection}) {
     Sketch sketch;
     sketch.add(kind, {{0, 0}, {100, 0}}).add(kind, {{20, 20}, {23, 21}}).add(kind, {{50, 0}, {52, 3}});
     EXPECT_EQ(sketch.strokes(0).strokes.size(), 3u);
     EXPECT_EQ(sketch.strokes().strokes.size(), 1u);
-    EXPECT_NEAR(length_of(sketch.strokes()), 100, 1e-9);
+    EXPECT_NEAR(total_length(sketch.strokes()), 100, 1e-9);
   }
 }
 
@@ -77,11 +70,11 @@ TEST(ShortStrokes, OfOutlinesStay) {
   for (const EdgeKind kind : {EdgeKind::silhouette, EdgeKind::boundary}) {
     Sketch sketch;
     sketch.add(kind, {{0, 0}, {100, 0}}).add(kind, {{0, 3}, {100, 3}}).add(kind, {{50, 0}, {50, 3}});
-    EXPECT_NEAR(length_of(sketch.strokes()), 203, 1e-9);
+    EXPECT_NEAR(total_length(sketch.strokes()), 203, 1e-9);
     // A crease in its place is dropped: both lines go on without it.
     Sketch other;
     other.add(kind, {{0, 0}, {100, 0}}).add(kind, {{0, 3}, {100, 3}}).add(EdgeKind::crease, {{50, 0}, {50, 3}});
-    EXPECT_NEAR(length_of(other.strokes()), 200, 1e-9);
+    EXPECT_NEAR(total_length(other.strokes()), 200, 1e-9);
   }
 }
 
@@ -102,7 +95,7 @@ TEST(ShortStrokes, ThatLinkLinesStay) {
   const Strokes whole = sketch.strokes(0), kept = sketch.strokes();
   EXPECT_EQ(whole.strokes.size(), 5u);
   EXPECT_EQ(kept.strokes.size(), 5u);
-  EXPECT_NEAR(length_of(kept), length_of(whole), 1e-9);
+  EXPECT_NEAR(total_length(kept), total_length(whole), 1e-9);
 }
 
 TEST(Strokes, GoOnThroughJunctions) {
@@ -145,7 +138,7 @@ TEST(ShortStrokes, OfOneKindLinkOthers) {
       .add(EdgeKind::crease, {{100, 0}, {102, 2}})
       .add(EdgeKind::silhouette, {{102, 2}, {200, 9}});
   EXPECT_EQ(sketch.strokes(kShortest, true).strokes.size(), 3u);
-  EXPECT_NEAR(length_of(sketch.strokes(kShortest, true)), length_of(sketch.strokes(0, true)), 1e-9);
+  EXPECT_NEAR(total_length(sketch.strokes(kShortest, true)), total_length(sketch.strokes(0, true)), 1e-9);
 }
 
 TEST(ShortStrokes, AreNotHeldByWhatIsHidden) {

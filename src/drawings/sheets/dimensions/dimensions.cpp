@@ -672,20 +672,39 @@ constexpr double same_direction = 0.9999;  // cosine
 /// The measured direction of an axis of the page, as in PageDimension.
 constexpr double angle_of(int axis) { return axis == 0 ? 0 : std::numbers::pi / 2; }
 
-/// Draws an overall size along an axis: level for axis 0; for axis 1 upright, with x and y swapped, to be read from the
-/// right. `taken`: millimetres on the left of the view and below it that other marks occupy.
-void draw_overall_size(DimensionPen& pen, const MeasuredView& view, const glm::dvec2& taken, int axis, const Extent& e,
-                       const std::string& text, double numbers_per_unit) {
-  const bool is_level = axis == 0;
-  const double line =
-      is_level ? view.box.high.y + (first_distance + taken.y) : view.box.low.x - (first_distance + taken.x);
-  const double away = is_level ? 1 : -1;
-  const auto at = [&](double along, double across) {
-    return is_level ? glm::dvec2(along, across) : glm::dvec2(across, along);
-  };
+/// The line on which the dimensions of a view along an axis stand: below the view for axis 0, on its left for axis 1,
+/// with x and y swapped, to be read from the right.
+struct DimensionLine {
+  /// `taken`: millimetres on the left of the view and below it that other marks occupy.
+  DimensionLine(const MeasuredView& its_view, int its_axis, const Extent& its_extent, const glm::dvec2& taken)
+      : view(its_view),
+        axis(its_axis),
+        extent(its_extent),
+        away(axis == 0 ? 1 : -1),
+        place(axis == 0 ? view.box.high.y + (first_distance + taken.y) : view.box.low.x - (first_distance + taken.x)) {}
+
+  [[nodiscard]] bool is_level() const { return axis == 0; }
+  [[nodiscard]] glm::dvec2 at(double along, double across) const {
+    return is_level() ? glm::dvec2(along, across) : glm::dvec2(across, along);
+  }
+  /// The drawn point at an end of the view at which the extension line begins.
+  [[nodiscard]] glm::dvec2 foot(double end) const { return at(end, view.foot_of_end(axis, end)); }
+
+  const MeasuredView& view;
+  int axis;
+  Extent extent;
+  double away;   ///< 1 or -1: across the axis, from the view to the line
+  double place;  ///< across the axis
+};
+
+void draw_overall_size(DimensionPen& pen, const DimensionLine& row, const std::string& text, double numbers_per_unit) {
+  const Extent& e = row.extent;
+  const bool is_level = row.is_level();
+  const double line = row.place, away = row.away;
+  const glm::dvec2 feet[] = {row.foot(e.low), row.foot(e.high)}, out = row.at(0, away);
   pen.begin_dimension();
-  for (const double end : {e.low, e.high})
-    pen.line(at(end, view.foot_of_end(axis, end) + away * extension_gap), at(end, line + away * extension_overshoot));
+  pen.line(feet[0] + out * extension_gap, row.at(e.low, line + away * extension_overshoot));
+  pen.line(feet[1] + out * extension_gap, row.at(e.high, line + away * extension_overshoot));
   const double length = e.high - e.low, arrow = pen.arrow_length(), width = pen.width_of(text);
   const bool is_inside = length >= 2 * arrow + 1;
   const bool is_text_inside = width + 2 * text_distance <= length;
@@ -694,87 +713,86 @@ void draw_overall_size(DimensionPen& pen, const MeasuredView& view, const glm::d
   const double tail = is_inside ? 0 : 2 * arrow;
   const double text_tail = is_text_inside ? tail : std::max(tail, arrow) + width + 2 * text_distance;
   const double last = is_level ? e.low : e.high;
-  pen.line(at(last - forwards * tail, line), at(first + forwards * text_tail, line));
+  pen.line(row.at(last - forwards * tail, line), row.at(first + forwards * text_tail, line));
   const double inwards = is_inside ? -1 : 1;
-  pen.arrow(at(e.low, line), at(inwards, 0));
-  pen.arrow(at(e.high, line), at(-inwards, 0));
+  pen.arrow(row.at(e.low, line), row.at(inwards, 0));
+  pen.arrow(row.at(e.high, line), row.at(-inwards, 0));
   const double middle =
       is_text_inside ? (e.low + e.high) / 2 : first + forwards * (text_tail - text_distance - width / 2);
-  pen.text(text, at(middle, line), TextAlign::centre, !is_level);
-  pen.end_dimension({DimensionKind::linear, at(e.low, view.foot_of_end(axis, e.low)),
-                     at(e.high, view.foot_of_end(axis, e.high)), at(e.high, line), angle_of(axis),
-                     view.size_of(numbers_per_unit)});
+  pen.text(text, row.at(middle, line), TextAlign::centre, !is_level);
+  pen.end_dimension({DimensionKind::linear, feet[0], feet[1], row.at(e.high, line), angle_of(row.axis),
+                     row.view.size_of(numbers_per_unit)});
 }
 
 constexpr double positions_room = first_distance + extension_overshoot + 14;  // numbers of five digits
 constexpr double jog_room = 3.5;                                              // more, if numbers are moved aside
 constexpr double least_gap = 2, most_moved = 8;                               // millimetres, of numbers moved aside
 
-/// Draws the positions of circles and steps along an axis, as running dimensions. `taken` as for draw_overall_size();
-/// `missed`: planes of steps that had no room so far.
-void draw_positions(DimensionPen& pen, const MeasuredView& view, const glm::dvec2& taken, int axis, const Extent& e,
-                    const std::vector<Diameters::Group>& groups, const std::vector<PlaneStep>& steps,
-                    std::set<std::size_t>& missed, const DimensionOptions& options, Dimensions& all) {
-  const bool is_level = axis == 0;
-  const double row = is_level ? view.box.high.y + first_distance + taken.y : view.box.low.x - first_distance - taken.x;
-  const double away = is_level ? 1 : -1, datum = is_level ? e.low : e.high, forwards = is_level ? 1 : -1;
-  const auto at = [&](double along, double across) {
-    return is_level ? glm::dvec2(along, across) : glm::dvec2(across, along);
-  };
+/// The end of a view from which positions are measured, and the direction in which they grow: right or up.
+double datum_of(const DimensionLine& row) { return row.is_level() ? row.extent.low : row.extent.high; }
+double growth_of(const DimensionLine& row) { return row.is_level() ? 1 : -1; }
+
+/// The positions of circles and steps along an axis. `missed`: planes of steps that have no number so far.
+std::vector<Position> positions_of(const DimensionLine& row, const std::vector<Diameters::Group>& groups,
+                                   const std::vector<PlaneStep>& steps, std::set<std::size_t>& missed) {
+  const int axis = row.axis;
+  const double datum = datum_of(row), forwards = growth_of(row);
   std::vector<Position> positions;
   for (const Diameters::Group& group : groups)
     for (const SeenCircle& circle : group.circles)
       positions.push_back({(circle.centre[axis] - datum) * forwards,
-                           circle.centre[1 - axis] + away * (circle.radius + extension_gap),
+                           circle.centre[1 - axis] + row.away * (circle.radius + extension_gap),
                            std::numeric_limits<double>::infinity()});
   for (const PlaneStep& step : steps) {
     if (step.is_spare && !missed.contains(step.plane)) continue;
     missed.insert(step.plane);
-    const glm::dvec2 place = view.on_page(at(step.at, step.foot));
+    const glm::dvec2 place = row.view.on_page(row.at(step.at, step.foot));
     const double distance = (place[axis] - datum) * forwards;
     // So near to an end of the view, two extension lines look like one.
-    if (distance < least_gap / 2 || distance > e.high - e.low - least_gap / 2) continue;
-    positions.push_back({distance, place[1 - axis] + away * extension_gap, step.length, {step.plane}});
+    if (distance < least_gap / 2 || distance > row.extent.high - row.extent.low - least_gap / 2) continue;
+    positions.push_back({distance, place[1 - axis] + row.away * extension_gap, step.length, {step.plane}});
   }
-  const bool has_all = options.level >= Dimensioning::all;
+  return positions;
+}
+
+/// The room of a row's numbers. The extension lines of the overall size run beside the first and the last number.
+NumberRoom number_room(const Extent& e, const DimensionOptions& options) {
   const double thickness = options.text_height + text_distance, infinity = std::numeric_limits<double>::infinity();
-  // The extension lines of the overall size run beside the first and the last number.
-  NumberRoom room{thickness, thickness, 0, -infinity, infinity};
-  if (has_all)
-    room = {thickness, least_gap, most_moved, (thickness + text_distance) / 2,
-            e.high - e.low - (thickness + text_distance) / 2};
-  const std::vector<Position> chosen = chosen_positions(std::move(positions), away, room, all.left_out);
+  if (options.level < Dimensioning::all) return {thickness, thickness, 0, -infinity, infinity};
+  const double rim = (thickness + text_distance) / 2;
+  return {thickness, least_gap, most_moved, rim, e.high - e.low - rim};
+}
+
+/// Draws positions as running dimensions.
+void draw_positions(DimensionPen& pen, const DimensionLine& row, const std::vector<Position>& chosen,
+                    const DimensionOptions& options) {
   if (chosen.empty()) return;
-  for (const Position& p : chosen)
-    for (const std::size_t plane : p.planes) missed.erase(plane);
+  const double datum = datum_of(row), forwards = growth_of(row), away = row.away, line = row.place;
   const bool has_jogs = std::any_of(chosen.begin(), chosen.end(),
                                     [](const Position& p) { return std::abs(p.place - p.distance) > same_place; });
-  const double end = row + away * (extension_overshoot + (has_jogs ? jog_room : 0));
+  const double overshoot = line + away * extension_overshoot, end = overshoot + away * (has_jogs ? jog_room : 0);
   double farthest = 0;
   for (const Position& p : chosen) {
     const double along = datum + forwards * p.distance, number = datum + forwards * p.place;
     pen.begin_dimension();
-    pen.line(at(along, p.foot), at(along, row + away * extension_overshoot));
-    if (has_jogs) pen.line(at(along, row + away * extension_overshoot), at(number, end));
+    pen.line(row.at(along, p.foot), row.at(along, overshoot));
+    if (has_jogs) pen.line(row.at(along, overshoot), row.at(number, end));
     // Too near to the origin, the arrowhead points back to it.
     const double arrow = pen.arrow_length();
-    const bool is_near = has_all && p.distance < arrow + origin_radius &&
+    const bool is_near = options.level >= Dimensioning::all && p.distance < arrow + origin_radius &&
                          (&p == &chosen.back() || (&p)[1].distance > p.distance + arrow);
-    pen.arrow(at(along, row), at(is_near ? -forwards : forwards, 0));
+    pen.arrow(row.at(along, line), row.at(is_near ? -forwards : forwards, 0));
     farthest = std::max(farthest, p.distance + (is_near ? 2 * arrow : 0));
     // The number stands in line with its extension line.
-    const glm::dvec2 base = at(number + options.text_height / 2 + text_distance, end + away);
-    pen.text(dimension_text(view.size_of(p.distance) * options.numbers_per_unit, options.number_style), base,
-             TextAlign::right, is_level);
-    pen.end_dimension({DimensionKind::position, at(datum, row), at(along, p.foot - away * extension_gap),
-                       at(along, row + away * extension_overshoot), angle_of(axis),
-                       view.size_of(options.numbers_per_unit)});
-    ++all.count;
+    const glm::dvec2 base = row.at(number + options.text_height / 2 + text_distance, end + away);
+    pen.text(dimension_text(row.view.size_of(p.distance) * options.numbers_per_unit, options.number_style), base,
+             TextAlign::right, row.is_level());
+    pen.end_dimension({DimensionKind::position, row.at(datum, line), row.at(along, p.foot - away * extension_gap),
+                       row.at(along, overshoot), angle_of(row.axis), row.view.size_of(options.numbers_per_unit)});
   }
-  pen.line(at(datum, view.foot_of_end(axis, datum) + away * extension_gap),
-           at(datum, row + away * extension_overshoot));
-  pen.line(at(datum, row), at(datum + forwards * farthest, row));
-  pen.origin(at(datum, row));
+  pen.line(row.foot(datum) + row.at(0, away * extension_gap), row.at(datum, overshoot));
+  pen.line(row.at(datum, line), row.at(datum + forwards * farthest, line));
+  pen.origin(row.at(datum, line));
 }
 
 /// Millimetres that a row of the positions of a view along an axis occupies. The longest number decides.
@@ -947,7 +965,7 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
         text = flats_sign + text;
       }
       const glm::dvec2 within = views[i].taken + planned.rooms[i];
-      draw_overall_size(pen, measured[i], within, axis, extent, text, options.numbers_per_unit);
+      draw_overall_size(pen, {measured[i], axis, extent, within}, text, options.numbers_per_unit);
       ++all.count;
     }
   }
@@ -959,11 +977,17 @@ Dimensions place_dimensions(std::span<const DimensionedView> views, const PageBo
       groups[i] = diameters.groups_of(measured[i], all);
       if (options.level >= Dimensioning::all)
         for (Diameters::Group& flats : diameters.flats_of(measured[i])) groups[i].push_back(std::move(flats));
-      for (const int axis : {0, 1})
-        if (const Extent extent = measured[i].extent(axis);
-            planned.rooms[i][1 - axis] > 0 && extent.diameter == nullptr)
-          draw_positions(pen, measured[i], views[i].taken, axis, extent, groups[i], planned.steps[i][std::size_t(axis)],
-                         missed, options, all);
+      for (const int axis : {0, 1}) {
+        const DimensionLine row(measured[i], axis, measured[i].extent(axis), views[i].taken);
+        if (!(planned.rooms[i][1 - axis] > 0) || row.extent.diameter != nullptr) continue;
+        const std::vector<Position> chosen =
+            chosen_positions(positions_of(row, groups[i], planned.steps[i][std::size_t(axis)], missed), row.away,
+                             number_room(row.extent, options), all.left_out);
+        for (const Position& position : chosen)
+          for (const std::size_t plane : position.planes) missed.erase(plane);
+        draw_positions(pen, row, chosen, options);
+        all.count += chosen.size();
+      }
     }
     all.left_out += missed.size();
     for (const std::vector<Diameters::Group>& of_view : groups) diameters.add(of_view, all);
