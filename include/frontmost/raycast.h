@@ -25,12 +25,12 @@ struct RayTree;  // src/methods/raycast/index/ray_tree.h
 /// vertices, so the surfaces may be destroyed; ids remain those of the surfaces. Threads may share an index, except
 /// during refit() and follow().
 ///
-/// A leaf holds sixteen triangles, chosen by median splits of runs of the surfaces' spatial order. A node holds sixteen
+/// A leaf holds eight triangles, chosen by median splits of runs of the surfaces' spatial order. A node holds eight
 /// boxes, split by the surface area heuristic (J. Goldsmith, J. Salmon. Automatic Creation of Object Hierarchies for
 /// Ray Tracing. 1987; binned as in I. Wald. On fast Construction of SAH-based Bounding Volume Hierarchies. 2007).
 class RayIndex {
  public:
-  /// O(n log n) for n triangles, in parallel; keeps about 45 bytes a triangle. The index is the same for any number of
+  /// O(n log n) for n triangles, in parallel; keeps about 46 bytes a triangle. The index is the same for any number of
   /// threads.
   explicit RayIndex(const Surfaces& surfaces, const Execution& execution = {});
   ~RayIndex();

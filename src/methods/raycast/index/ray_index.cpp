@@ -38,7 +38,7 @@ Box box_of(const RayNode& node) {
 
 constexpr std::size_t kRefitLeavesPerPart = 512, kRefitClustersPerPart = 64;
 
-/// Returns the places of a tree's triangles, by id. A place is leaf * 16 + lane, or no_index.
+/// Returns the places of a tree's triangles, by id. A place is leaf * kRayLanes + lane, or no_index.
 Buffer<std::uint32_t> places_of(const RayTree& tree, std::size_t id_count, const Execution& execution) {
   Buffer<std::uint32_t> places(id_count, no_index);
   parallel_for(execution, tree.leaves.size(), kRefitLeavesPerPart, [&](std::size_t begin, std::size_t end) {
@@ -76,7 +76,7 @@ void fit_nodes(const std::vector<Box>& boxes, RayTree& tree) {
     RayNode& node = tree.nodes[n];
     for (std::size_t lane = 0; lane < node.count; ++lane) node.set_box(lane, box_of_child(node.child[lane]));
   }
-  tree.bounds = box_of_child(tree.root);
+  tree.set_bounds(box_of_child(tree.root));
 }
 
 /// Moves the triangles of `kept` to their places in `surfaces`, and fits every box anew. \returns false if `surfaces`
@@ -124,7 +124,7 @@ void fit_above(RayTree& tree, std::uint32_t leaf, Box box) {
     node.set_box(link % kRayLanes, box);
     box = box_of(node);
   }
-  tree.bounds = box;
+  tree.set_bounds(box);
 }
 
 /// Moves an instance's triangles in a leaf. \returns their number, or no_index if a triangle is not finite any more.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The data of RayIndex: nodes of sixteen boxes, leaves of sixteen triangles, as structure of arrays.
+// The data of RayIndex: nodes of eight boxes, leaves of eight triangles, as structure of arrays.
 //
-//    node   low x   [ . . . . . . . . . . . . . . . . ]       A vector of the widest instruction set tests all sixteen
-//           low y   [ ................................ ]       boxes or triangles at once; narrower sets take 4 or 8 in
-//           ...                                                turn, and give the same bits.
-//           child   [ leaf | node | node | leaf ... ]
+//    node   low x   [ . . . . . . . . ]       One vector of AVX2 or AVX-512 tests all eight boxes or triangles at once;
+//           low y   [ ................ ]       narrower instruction sets take fewer in turn, and give the same bits.
+//           ...
+//           child   [ leaf | node ... ]
 //
 // Wide nodes make few levels between the root and a leaf, and a walk waits for memory once a level. Unused lanes hold
 // zeros and come last.
@@ -23,8 +23,8 @@
 
 namespace frontmost {
 
-/// Boxes or triangles side by side: the lanes of one vector of the widest instruction set.
-inline constexpr std::size_t kRayLanes = 16;
+/// Boxes or triangles side by side. With sixteen, single rays took 1.6 times as long on AVX2, and views as long.
+inline constexpr std::size_t kRayLanes = 8;
 
 /// A child is the index of a leaf, with this bit set, or the index of a node.
 inline constexpr std::uint32_t kLeafBit = 0x80000000u;
@@ -35,6 +35,8 @@ struct alignas(64) RayNode {
   std::uint32_t child[kRayLanes];
   std::uint32_t count;
 
+  /// low and high as one array of floats.
+  [[nodiscard]] const float* bounds() const { return &low[0][0]; }
   void set_box(std::size_t lane, const Box& box) {
     for (int axis = 0; axis < 3; ++axis) {
       low[axis][lane] = box.low[axis];
@@ -62,7 +64,7 @@ struct alignas(64) RayLeaf {
   }
 };
 
-/// Links from children to parents, for instances that move. A link is node * 16 + lane, or no_index at the root.
+/// Links from children to parents, for instances that move. A link is node * kRayLanes + lane, or no_index at the root.
 struct RayLinks {
   std::vector<std::uint32_t> above_node;
   std::vector<std::uint32_t> above_leaf;
@@ -76,6 +78,7 @@ struct RayTree {
   std::uint32_t triangle_count = 0;
   std::uint32_t depth = 0;                 ///< nodes from the root to the deepest leaf
   Box bounds;                              ///< around the triangles
+  glm::vec3 reach{0};                      ///< the bounds' greatest distances from zero along each axis
   std::shared_ptr<const Cutouts> cutouts;  ///< null if no triangle has holes
   std::shared_ptr<const MaterialSides> sides;
   /// A second tree, which holds the copies that were removed from this tree. Each copy has the vertices of a triangle
@@ -85,12 +88,19 @@ struct RayTree {
   std::optional<RayLinks> links;  ///< made when first needed
 
   [[nodiscard]] const RayLeaf& leaf(std::uint32_t child) const { return leaves[child & ~kLeafBit]; }
-  /// Prefetches a child that will be visited soon.
+  /// Prefetches a child that will be visited soon. No branch depends on the child, as it would often be mispredicted.
   void prefetch(std::uint32_t child) const {
-    const char* const from =
-        child & kLeafBit ? reinterpret_cast<const char*>(&leaf(child)) : reinterpret_cast<const char*>(&nodes[child]);
-    const std::size_t bytes = child & kLeafBit ? sizeof(RayLeaf) : sizeof(RayNode);
-    for (std::size_t i = 0; i < bytes; i += 64) prefetch_line(from + i);
+    const std::uint32_t is_leaf = child >> 31, size = sizeof(RayNode) + is_leaf * (sizeof(RayLeaf) - sizeof(RayNode));
+    const char* const bases[] = {reinterpret_cast<const char*>(nodes.data()),
+                                 reinterpret_cast<const char*>(leaves.data())};
+    const char* const from = bases[is_leaf] + std::size_t(child & ~kLeafBit) * size;
+    for (std::size_t i = 0; i < sizeof(RayNode); i += 64) prefetch_line(from + i);
+    prefetch_line(from + size - 64);
+  }
+
+  void set_bounds(const Box& box) {
+    bounds = box;
+    reach = glm::max(glm::abs(box.low), glm::abs(box.high));
   }
 
   /// The most children that wait at once in a depth-first walk.

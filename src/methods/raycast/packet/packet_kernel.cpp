@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Casts a packet of a scan's rays through the tree: nearest boxes first, sixteen boxes or triangles at a time, for all
+// Casts a packet of a scan's rays through the tree: nearest boxes first, eight boxes or triangles at a time, for all
 // rays together.
 //
 // I. Wald, P. Slusallek, C. Benthin, M. Wagner. Interactive Rendering with Coherent Ray Tracing. 2001.

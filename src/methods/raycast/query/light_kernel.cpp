@@ -220,7 +220,7 @@ class LightPacket {
     }
   }
 
-  /// Sixteen triangles in the sheared plane. `may_meet` has a mask for each vector of rays: the triangles that it may
+  /// Eight triangles in the sheared plane. `may_meet` has a mask for each vector of rays: the triangles that it may
   /// meet.
   struct Sheared {
     alignas(64) float u[3][kRayLanes], v[3][kRayLanes], d[3][kRayLanes], reach[kRayLanes];

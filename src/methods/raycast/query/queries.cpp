@@ -27,8 +27,6 @@ ExactVector unrounded(const HighLowVector& v) {
   return sums;
 }
 
-glm::dvec3 rounded(const HighLowVector& v) { return {v.high[0], v.high[1], v.high[2]}; }
-
 /// Returns the t at which the ray meets the plane of vertices `c`, which are relative to the origin. Along every axis,
 /// t is kept between the vertices: for slivers, or triangles tiny compared with their distance, rounding leaves no
 /// better bound. The signs are certain, so the rounded t must not contradict them.
@@ -152,9 +150,10 @@ int determinant_sign(const HighLowVector& a, const HighLowVector& b, const HighL
 }
 
 bool is_valid(const Query& q) {
-  if (!is_finite(q.origin)) return false;
-  if (q.is_segment) return is_finite(q.end) && q.end != q.origin;
-  return is_finite(q.direction) && q.direction != glm::vec3(0);
+  const glm::vec3& other = q.is_segment ? q.end : q.direction;
+  // The sum is zero, or NaN if a value is not finite.
+  if (dot3(q.origin, glm::vec3(0)) + dot3(other, glm::vec3(0)) != 0) return false;
+  return other != (q.is_segment ? q.origin : glm::vec3(0));
 }
 
 RayHit meet(const Query& q, const std::array<glm::vec3, 3>& corners, PrimitiveId id) {
@@ -176,7 +175,13 @@ RayHit meet(const Query& q, const std::array<glm::vec3, 3>& corners, PrimitiveId
     for (std::size_t k = 0; k < 3; ++k) e[k] = high_low_difference(corners[k], q.end);
     if (determinant_sign(e[0], e[1], e[2]) != -facing) return {};
   }
-  return {id, place_along(q, rounded(along), {rounded(c[0]), rounded(c[1]), rounded(c[2])}), facing < 0};
+  return certain_hit(q, corners, id, facing < 0);
+}
+
+RayHit certain_hit(const Query& q, const std::array<glm::vec3, 3>& corners, PrimitiveId id, bool is_front) {
+  const glm::dvec3 from(q.origin), along = q.is_segment ? glm::dvec3(q.end) - from : glm::dvec3(q.direction);
+  const auto relative = [&](std::size_t k) { return glm::dvec3(corners[k]) - from; };
+  return {id, place_along(q, along, {relative(0), relative(1), relative(2)}), is_front};
 }
 
 bool is_valid(const TrianglePoint& point) {

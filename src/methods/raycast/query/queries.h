@@ -52,6 +52,10 @@ struct Query {
 /// the query meets the triangle is decided exactly.
 [[nodiscard]] RayHit meet(const Query& query, const std::array<glm::vec3, 3>& corners, PrimitiveId id);
 
+/// The same for a triangle that the query certainly meets.
+[[nodiscard]] RayHit certain_hit(const Query& query, const std::array<glm::vec3, 3>& corners, PrimitiveId id,
+                                 bool is_front);
+
 /// Returns false if the point is undefined: a value is not finite, a weight is negative, or no weight is above zero.
 [[nodiscard]] bool is_valid(const TrianglePoint& point);
 
@@ -94,7 +98,8 @@ enum class Want : std::uint8_t {
 void walk(const RayTree& tree, const Query& query, Want want, std::vector<RayHit>& hits, Isa isa);
 
 /// Stores the hit of each query: closest or any as `want` says, or none if the query is not valid. Precondition: there
-/// are as many answers as queries. \returns the number of nodes and leaves that were visited.
+/// are as many answers as queries. \returns the number of nodes and leaves that were visited, the same for every
+/// instruction set.
 std::uint64_t walk_batch(const RayTree& tree, std::span<const Query> queries, Want want, std::span<RayHit> answers,
                          Isa isa);
 

@@ -35,6 +35,7 @@ using QU = hn::RebindToUnsigned<QF>;
 using QV = hn::Vec<QF>;
 using QM = hn::Mask<QF>;
 constexpr std::size_t kQueryLanes = hn::MaxLanes(QF());
+constexpr std::uint32_t kAllLanes = (1u << kQueryLanes) - 1;
 
 HWY_INLINE std::uint32_t QueryBits(QM mask) { return std::uint32_t(frontmost::HWY_NAMESPACE::BitsOf(QF(), mask)); }
 
@@ -56,10 +57,11 @@ HWY_INLINE std::size_t RankOf(const std::int32_t* at, std::size_t count, std::si
   return rank;
 }
 
-/// The triangles that the ray's line certainly misses (`beside`), and those that it certainly passes through
-/// (`inside`). If the line meets a triangle at all, it does so between the places `from` and `to`.
+/// The triangles that a ray's line certainly passes through (`inside`); `front` has a bit for those of them that it
+/// passes from the front. The line meets a triangle between the places `from` and `to`, if at all.
 struct Passes {
-  QM beside, inside;
+  std::uint32_t front;
+  QM inside;
   QV from, to;
 };
 
@@ -67,49 +69,84 @@ struct Passes {
 /// along.
 class RayAxis {
  public:
-  explicit RayAxis(const Query& query) : origin_(query.origin) {
-    const glm::vec3 size = glm::abs(query.direction);
-    z_ = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    u_ = (z_ + 1) % 3, v_ = (z_ + 2) % 3;
-    sign_ = query.direction[z_] < 0 ? -1.0f : 1.0f;
-    length_ = size[z_];
-    slope_u_ = query.direction[u_] / query.direction[z_];
-    slope_v_ = query.direction[v_] / query.direction[z_];
+  RayAxis() = default;
+  explicit RayAxis(const Query& query) {
+    const float along[3] = {query.direction.x, query.direction.y, query.direction.z};
+    const float origin[3] = {query.origin.x, query.origin.y, query.origin.z};
+    const float x = std::abs(along[0]), y = std::abs(along[1]), z = std::abs(along[2]);
+    // No branch depends on the direction: they would be mispredicted.
+    const int y_or_z = 1 + int(z > y);
+    z_ = y_or_z & -int(std::max(y, z) > x);
+    u_ = z_ == 2 ? 0 : z_ + 1, v_ = z_ == 0 ? 2 : z_ - 1;
+    sign_ = std::copysign(1.0f, along[z_]);
+    length_ = std::abs(along[z_]);
+    slope_u_ = along[u_] / along[z_];
+    slope_v_ = along[v_] / along[z_];
+    origin_u_ = origin[u_], origin_v_ = origin[v_], origin_z_ = origin[z_];
   }
 
   [[nodiscard]] float place_of(float t) const { return t * length_; }
   [[nodiscard]] float t_of(float place) const { return place / length_; }
 
-  /// Tests triangles that are sheared along the ray. The line meets a triangle if all of its edges turn about the axis
-  /// in one direction, and misses it if two edges certainly turn in different directions.
-  [[nodiscard]] HWY_INLINE Passes Pass(const RayLeaf& leaf, std::size_t first) const {
+  /// Triangles sheared along the ray: how their edges turn about the axis, and the vertices' places on it.
+  struct Edges {
+    QV turn[3], z[3];
+    QV least, most;         ///< of the turns
+    QV size, error, bound;  ///< of all coordinates; error bounds of places and of turns
+  };
+  [[nodiscard]] HWY_INLINE Edges EdgesOf(const RayLeaf& leaf, std::size_t first) const {
     const QF d;
-    QV u[3], v[3], z[3];
+    QV u[3], v[3];
+    Edges edges;
+    QV(&z)[3] = edges.z;
     for (int k = 0; k < 3; ++k) {
-      const auto from_origin = [&](int axis) HWY_ATTR {
-        return hn::Sub(hn::Load(d, leaf.corner[k][axis] + first), hn::Set(d, origin_[axis]));
+      const auto from_origin = [&](int axis, float origin) HWY_ATTR {
+        return hn::Sub(hn::Load(d, leaf.corner[k][axis] + first), hn::Set(d, origin));
       };
-      z[k] = from_origin(z_);
-      u[k] = hn::Sub(from_origin(u_), hn::Mul(z[k], hn::Set(d, slope_u_)));
-      v[k] = hn::Sub(from_origin(v_), hn::Mul(z[k], hn::Set(d, slope_v_)));
-      z[k] = hn::Mul(z[k], hn::Set(d, sign_));
+      z[k] = from_origin(z_, origin_z_);
+      u[k] = hn::Sub(from_origin(u_, origin_u_), hn::Mul(z[k], hn::Set(d, slope_u_)));
+      v[k] = hn::Sub(from_origin(v_, origin_v_), hn::Mul(z[k], hn::Set(d, slope_v_)));
     }
     const auto turn = [&](int a, int b) HWY_ATTR { return hn::Sub(hn::Mul(u[a], v[b]), hn::Mul(v[a], u[b])); };
-    const QV e[3] = {turn(1, 2), turn(2, 0), turn(0, 1)};
-    const QV wide = hn::Max(Size(u), Size(v)), deep = Size(z), total = hn::Add(hn::Add(e[0], e[1]), e[2]);
-    const QV error = hn::Mul(hn::Add(wide, deep), hn::Set(d, 0x1p-20f));
-    const QV bound = hn::Add(hn::Mul(hn::Mul(hn::Add(wide, error), error), hn::Set(d, 8.0f)), hn::Set(d, 0x1p-140f));
-    const QV least = Least(e), most = Most(e), below = hn::Neg(bound);
-    const QM inside = hn::And(Serves(hn::Max(wide, deep), total), hn::Or(hn::Gt(least, bound), hn::Lt(most, below)));
+    edges.turn[0] = turn(1, 2), edges.turn[1] = turn(2, 0), edges.turn[2] = turn(0, 1);
+    const QV wide = hn::Max(Size(u), Size(v)), deep = Size(z);
+    edges.size = hn::Max(wide, deep);
+    edges.error = hn::Mul(hn::Add(wide, deep), hn::Set(d, 0x1p-20f));
+    const QV product = hn::Mul(hn::Add(wide, edges.error), edges.error);
+    edges.bound = hn::Add(hn::Mul(product, hn::Set(d, 8.0f)), hn::Set(d, 0x1p-140f));
+    edges.least = Least(edges.turn);
+    edges.most = Most(edges.turn);
+    return edges;
+  }
+
+  /// Returns a bit for each triangle that the line may meet. It misses the triangle if two edges certainly turn in
+  /// different directions.
+  [[nodiscard]] static HWY_INLINE std::uint32_t MayPass(const Edges& edges) {
+    const QM missed = hn::And(hn::Gt(edges.most, edges.bound), hn::Lt(edges.least, hn::Neg(edges.bound)));
+    return ~QueryBits(missed) & kAllLanes;
+  }
+
+  /// Finds where the line meets the triangles: it does if all edges turn about the axis in one direction.
+  [[nodiscard]] HWY_INLINE Passes Pass(const Edges& edges) const {
+    const QF d;
+    const QV(&e)[3] = edges.turn;
+    const QV bound = edges.bound, below = hn::Neg(bound), total = hn::Add(hn::Add(e[0], e[1]), e[2]);
+    const QM right = hn::Lt(edges.most, below);
+    Passes passes;
+    passes.front = QueryBits(right) ^ (sign_ < 0 ? kAllLanes : 0);
+    passes.inside = hn::And(Serves(edges.size, total), hn::Or(hn::Gt(edges.least, bound), right));
     // The place is the mean of the vertices' places, weighted by turns, each of which may be wrong by `bound`.
+    QV z[3];
+    for (int k = 0; k < 3; ++k) z[k] = hn::Mul(edges.z[k], hn::Set(d, sign_));
     const QV share = hn::Div(hn::Set(d, 1.0f), total);
     const QV sum = hn::Add(hn::Add(hn::Mul(e[0], z[0]), hn::Mul(e[1], z[1])), hn::Mul(e[2], z[2]));
     const QV nearest = Least(z), farthest = Most(z), place = hn::Mul(sum, share);
     const QV wrong = hn::Mul(hn::Mul(hn::Sub(farthest, nearest), bound), hn::Mul(hn::Abs(share), hn::Set(d, 12.0f)));
-    const QV slack = hn::Add(wrong, error);
-    return {hn::And(hn::Gt(most, bound), hn::Lt(least, below)), inside,
-            hn::Sub(hn::IfThenElse(inside, hn::Max(hn::Sub(place, slack), nearest), nearest), error),
-            hn::Add(hn::IfThenElse(inside, hn::Min(hn::Add(place, slack), farthest), farthest), error)};
+    const QV slack = hn::Add(wrong, edges.error);
+    const QM inside = passes.inside;
+    passes.from = hn::Sub(hn::IfThenElse(inside, hn::Max(hn::Sub(place, slack), nearest), nearest), edges.error);
+    passes.to = hn::Add(hn::IfThenElse(inside, hn::Min(hn::Add(place, slack), farthest), farthest), edges.error);
+    return passes;
   }
 
  private:
@@ -121,7 +158,7 @@ class RayAxis {
   }
   static HWY_INLINE QV Size(const QV (&x)[3]) { return hn::Max(hn::Max(hn::Abs(x[0]), hn::Abs(x[1])), hn::Abs(x[2])); }
 
-  glm::vec3 origin_;
+  float origin_u_ = 0, origin_v_ = 0, origin_z_ = 0;
   int z_ = 2, u_ = 0, v_ = 1;  ///< the axis that the ray moves most along, and the other two
   float sign_ = 1, length_ = 1;
   float slope_u_ = 0, slope_v_ = 0;

@@ -43,8 +43,11 @@ using frontmost::HWY_NAMESPACE::Compactor;
 using frontmost::HWY_NAMESPACE::ForEachBit;
 using view_detail::HWY_NAMESPACE::Kept;
 
-// Vectors have at most as many lanes as a leaf, a node and a block have entries.
-using DF = hn::CappedTag<float, kRayLanes>;
+constexpr int kBlock = 4;  // pixels of a block's side
+constexpr std::size_t kBlockPixels = kBlock * kBlock;
+
+// Vectors of pixels, and of the queue's triangles, have at most as many lanes as a block has pixels.
+using DF = hn::CappedTag<float, kBlockPixels>;
 using DU = hn::RebindToUnsigned<DF>;
 using DI = hn::RebindToSigned<DF>;
 using VF = hn::Vec<DF>;
@@ -52,17 +55,23 @@ using VU = hn::Vec<DU>;
 using VI = hn::Vec<DI>;
 using MF = hn::Mask<DF>;
 // Whole vectors of doubles, and half vectors of floats with as many lanes.
-using DD = hn::CappedTag<double, kRayLanes>;
+using DD = hn::CappedTag<double, kBlockPixels>;
 using DHF = hn::Rebind<float, DD>;
 using VD = hn::Vec<DD>;
 
-constexpr std::size_t kLanes = hn::MaxLanes(DF());
+// Vectors of a leaf's triangles or a node's boxes.
+using LF = hn::CappedTag<float, kRayLanes>;
+using LU = hn::RebindToUnsigned<LF>;
+using LI = hn::RebindToSigned<LF>;
+using LeafV = hn::Vec<LF>;
+using LeafI = hn::Vec<LI>;
+using LeafM = hn::Mask<LF>;
+
+constexpr std::size_t kLanes = hn::MaxLanes(DF()), kLeafLanes = hn::MaxLanes(LF());
 constexpr std::size_t kDoubles = hn::MaxLanes(DD());
 
-constexpr int kBlock = 4;                    // pixels of a block's side
 constexpr int kBlocks = kTileSize / kBlock;  // blocks of a tile's side
 constexpr std::size_t kBlockCount = kBlocks * kBlocks;
-constexpr std::size_t kBlockPixels = kBlock * kBlock;
 constexpr float kPixel = kSubPixels;
 /// Half a unit in the last place of a float, relative.
 constexpr float kHalfUlp = 0x1p-24f;
@@ -223,11 +232,11 @@ HWY_NOINLINE MF Resolve(MF met, MF doubtful, VF sx, VF sy, Meets&& meets) {
 }
 
 /// Returns key_of_distance() of each lane.
-HWY_INLINE VF KeyOfDistance(const ScreenTransform& t, VF distance) {
-  const DF d;
-  const VF one = hn::Set(d, 1.0f);
+template <class D, class V>
+HWY_INLINE V KeyOfDistance(D d, const ScreenTransform& t, V distance) {
+  const V one = hn::Set(d, 1.0f);
   if (!t.orthographic) return hn::Min(hn::Mul(hn::Set(d, t.near), hn::Div(one, distance)), one);
-  const VF key = hn::Mul(hn::Sub(hn::Set(d, t.far), distance), hn::Set(d, t.inverse_range));
+  const V key = hn::Mul(hn::Sub(hn::Set(d, t.far), distance), hn::Set(d, t.inverse_range));
   return hn::Min(hn::Max(key, hn::Zero(d)), one);
 }
 
@@ -561,13 +570,13 @@ class RayTriangleQueue {
       : t_(frame.transform), facing_(frame.facing), place_(place), buffer_(buffer), large_(large) {}
 
   struct Batch {
-    VF x[3], y[3], d[3];
-    VU id, rect;  // x0, y0, x1, y1: pixels of the tile, one byte each from the lowest
+    LeafV x[3], y[3], d[3];
+    hn::Vec<LU> id, rect;  // x0, y0, x1, y1: pixels of the tile, one byte each from the lowest
   };
 
   /// Queues the triangles in the lanes of `kept`, and draws queued triangles as long as they fill a vector.
-  HWY_INLINE void Add(const Batch& batch, MF kept) {
-    const Compactor<DF> compact(kept);
+  HWY_INLINE void Add(const Batch& batch, LeafM kept) {
+    const Compactor<LF> compact(kept);
     for (std::size_t k = 0; k < 3; ++k) {
       compact.Store(batch.x[k], x_[k] + count_);
       compact.Store(batch.y[k], y_[k] + count_);
@@ -586,7 +595,7 @@ class RayTriangleQueue {
  private:
   /// Key planes of one vector of triangles.
   struct Planes {
-    alignas(64) float gx[kRayLanes], gy[kRayLanes], k0[kRayLanes], low[kRayLanes], high[kRayLanes];
+    alignas(64) float gx[kLanes], gy[kLanes], k0[kLanes], low[kLanes], high[kLanes];
   };
 
   /// Sets key_plane() of a vector of triangles between near and far.
@@ -618,9 +627,9 @@ class RayTriangleQueue {
       hn::Store(hn::DemoteTo(dh, k0), dh, planes.k0 + i);
     }
     const VF a = hn::LoadU(d, d_[0] + from), b = hn::LoadU(d, d_[1] + from), c = hn::LoadU(d, d_[2] + from);
-    const VF low = KeyOfDistance(t_, hn::Max(hn::Max(a, b), c));
+    const VF low = KeyOfDistance(d, t_, hn::Max(hn::Max(a, b), c));
     hn::Store(low, d, planes.low);
-    hn::Store(KeyOfDistance(t_, hn::Min(hn::Min(a, b), c)), d, planes.high);
+    hn::Store(KeyOfDistance(d, t_, hn::Min(hn::Min(a, b), c)), d, planes.high);
     const VF gx = hn::Load(d, planes.gx), gy = hn::Load(d, planes.gy), k0 = hn::Load(d, planes.k0);
     const VF steepest = hn::Set(d, kSteepest);
     const MF usual =
@@ -750,7 +759,7 @@ class RayTriangleQueue {
   RayTileBuffer& buffer_;
   LargeRayTriangles& large_;
   // Room for one vector more than the queue holds, because Compactor stores whole vectors.
-  static constexpr std::size_t kRoom = 3 * kRayLanes;
+  static constexpr std::size_t kRoom = kLanes + 2 * kRayLanes;
   alignas(64) float x_[3][kRoom], y_[3][kRoom], d_[3][kRoom];
   alignas(64) std::uint32_t id_[kRoom], rect_[kRoom];
   std::size_t count_ = 0;
