@@ -143,7 +143,7 @@ Pyramid::Pyramid(const Texture& texture, Encoding encoding, const Execution& exe
 
 void Pyramid::add_level(const Level& from, const Execution& execution) {
   const Level to{std::max(1, from.width / 2), std::max(1, from.height / 2), nullptr};
-  std::vector<glm::u8vec4> texels(std::size_t(to.width) * std::size_t(to.height));
+  Buffer<glm::u8vec4> texels(std::size_t(to.width) * std::size_t(to.height));
   const Halving halving{encoding_, table_of(encoding_), from.width, from.height, from.texels};
   constexpr std::size_t rows_at_once = 64;
   parallel_for(execution, std::size_t(to.height), rows_at_once, [&](std::size_t begin, std::size_t end) {

@@ -14,6 +14,7 @@
 
 #include "base/highway-inl.h"
 #include "base/isa.h"
+#include "base/memory.h"
 // After Highway: a block of its own.
 #include "base/lane_types-inl.h"
 
@@ -154,8 +155,13 @@ struct Wrapping {
   }
 };
 
+/// Columns and rows of the texels on either side of each tap, four numbers for a tap as in Taps::place.
+struct TexelPlaces {
+  alignas(64) std::int32_t first[4 * most_taps * sampled_at_once], second[4 * most_taps * sampled_at_once];
+};
+
 /// Finds the texels of all taps, as texel_pair() of texture_lookup.h does, or texel_of() for textures without filter.
-void PlaceTaps(const Texture& texture, Taps& taps) {
+void PlaceTaps(const Texture& texture, Taps& taps, TexelPlaces& out) {
   const DPlaces d;
   const hn::RebindToSigned<DPlaces> di;
   const WrappingLanes repeats(texture, Texture::Wrap::repeat), mirrors(texture, Texture::Wrap::mirror);
@@ -167,8 +173,8 @@ void PlaceTaps(const Texture& texture, Taps& taps) {
     const auto end = hn::Sub(size, one);
     if (texture.nearest) {
       const auto texel = hn::ConvertTo(di, hn::Min(hn::Floor(scaled), end));
-      hn::Store(texel, di, taps.first.values + i);
-      hn::Store(texel, di, taps.second.values + i);
+      hn::Store(texel, di, out.first + i);
+      hn::Store(texel, di, out.second + i);
       hn::Store(zero, d, taps.place.values + i);
       continue;
     }
@@ -176,35 +182,40 @@ void PlaceTaps(const Texture& texture, Taps& taps) {
     const auto low = hn::Floor(at), high = hn::Add(low, one);
     const auto first = hn::IfThenElse(hn::Lt(low, zero), hn::IfThenElseZero(wrap.repeats, end), hn::Min(low, end));
     const auto second = hn::IfThenElse(hn::Ge(high, size), hn::IfThenZeroElse(wrap.repeats, end), high);
-    hn::Store(hn::ConvertTo(di, first), di, taps.first.values + i);
-    hn::Store(hn::ConvertTo(di, second), di, taps.second.values + i);
+    hn::Store(hn::ConvertTo(di, first), di, out.first + i);
+    hn::Store(hn::ConvertTo(di, second), di, out.second + i);
     hn::Store(hn::Sub(at, low), d, taps.place.values + i);
   }
 }
 
-/// Two adjacent texels of the finer level and two of the next, with four channels each, in one vector or in several
-/// parts. Sums of both levels are half as long.
-constexpr int kLanes = 16;
-using DPart = hn::CappedTag<float, kLanes>;
-using VPart = hn::Vec<DPart>;
-using MPart = hn::Mask<DPart>;
-constexpr int kPartLanes = int(hn::MaxLanes(DPart()));
-using DSum = hn::CappedTag<float, kLanes / 2>;
-using VSum = hn::Vec<DSum>;
-constexpr int kSumLanes = int(hn::MaxLanes(DSum())), kSums = kLanes / 2 / kSumLanes;
-
-/// Returns the lanes where `pattern` is 1, in a vector that begins at lane `first`.
-template <class D>
-HWY_INLINE hn::Mask<D> LanesOf(D d, const float* pattern, int first) {
-  return hn::Gt(hn::LoadU(d, pattern + first), hn::Zero(d));
+/// Turns columns and rows into offsets from the beginning of the level.
+void FindOffsets(const TexelPlaces& places, Taps& taps) {
+  for (int n = 0; n < 2 * taps.taps; ++n) {
+    const auto width = std::uint32_t(std::int32_t(taps.size.values[2 * n]));
+    const std::int32_t left = places.first[2 * n];
+    taps.upper[n] = std::uint32_t(places.first[2 * n + 1]) * width + std::uint32_t(left);
+    taps.lower[n] = std::uint32_t(places.second[2 * n + 1]) * width + std::uint32_t(left);
+    taps.beside[n] = places.second[2 * n] - left;
+  }
 }
-constexpr float kAlpha[kLanes] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
-constexpr float kFiner[kLanes] = {1, 1, 1, 1, 0, 0, 0, 0, 1, 1, 1, 1, 0, 0, 0, 0};
+
+/// Two adjacent texels with four channels each, in one vector or in several parts.
+constexpr int kChannels = 4, kPairLanes = 2 * kChannels;
+using DPair = hn::CappedTag<float, kPairLanes>;
+using VPair = hn::Vec<DPair>;
+using MPair = hn::Mask<DPair>;
+constexpr int kPartLanes = int(hn::MaxLanes(DPair())), kParts = kPairLanes / kPartLanes;
+/// One texel, likewise.
+using DTexel = hn::CappedTag<float, kChannels>;
+using VTexel = hn::Vec<DTexel>;
+constexpr int kTexelLanes = int(hn::MaxLanes(DTexel())), kTexelParts = kChannels / kTexelLanes;
+
+constexpr float kAlpha[kPairLanes] = {0, 0, 0, 1, 0, 0, 0, 1};
 
 /// Converts bytes to linear light. sRGB bytes follow the curve, except for alpha; linear bytes are divided by 255.
 template <Encoding encoding>
-HWY_INLINE VPart Light(VPart bytes, MPart is_alpha) {
-  const DPart d;
+HWY_INLINE VPair Light(VPair bytes, MPair is_alpha) {
+  const DPair d;
   const auto x = hn::Mul(bytes, hn::Set(d, 1.0f / 255));
   if constexpr (encoding == Encoding::linear) return x;
   // The polynomial is fitted to the 245 bytes above the straight part, in steps of a byte. Its pairs of terms do not
@@ -225,91 +236,107 @@ HWY_INLINE V Mix(V a, V b, V t) {
   return hn::Add(a, hn::Mul(hn::Sub(b, a), t));
 }
 
-/// The four texels around a tap: two adjacent ones in the upper row, and the two below them. A single level fills the
-/// lower half of each number.
-struct Quad {
-  std::uint64_t upper[2], lower[2];
-};
-
 HWY_INLINE std::uint64_t Bits(const glm::u8vec4& texel) {
   std::uint32_t bits;
   std::memcpy(&bits, &texel, sizeof bits);
   return bits;
 }
 
-HWY_INLINE Quad QuadAt(const Pyramid::Level& level, const std::int32_t* first, const std::int32_t* second) {
-  const glm::u8vec4* const upper = level.texels + std::size_t(first[1]) * std::size_t(level.width);
-  const glm::u8vec4* const lower = level.texels + std::size_t(second[1]) * std::size_t(level.width);
-  return {{Bits(upper[first[0]]), Bits(upper[second[0]])}, {Bits(lower[first[0]]), Bits(lower[second[0]])}};
+/// Returns a texel and the one `beside` texels further on, in memory order.
+HWY_INLINE std::uint64_t PairAt(const glm::u8vec4* texel, std::int32_t beside) {
+  if (beside != 1) return Bits(texel[0]) | Bits(texel[beside]) << 32;
+  std::uint64_t pair;
+  std::memcpy(&pair, texel, sizeof pair);
+  return pair;
 }
 
-HWY_INLINE Quad Joined(const Quad& fine, const Quad& coarse) {
-  return {{fine.upper[0] | coarse.upper[0] << 32, fine.upper[1] | coarse.upper[1] << 32},
-          {fine.lower[0] | coarse.lower[0] << 32, fine.lower[1] | coarse.lower[1] << 32}};
+/// Returns the floats of a part of a pair.
+HWY_INLINE VPair PartOf(std::uint64_t pair, int part) {
+  const DPair d;
+  const hn::Rebind<std::uint8_t, DPair> d8;
+  const hn::RebindToSigned<DPair> di;
+  using Word = std::conditional_t<kPartLanes == 8, std::uint64_t,
+                                  std::conditional_t<kPartLanes == 4, std::uint32_t, std::uint8_t>>;
+  const auto bytes = hn::Set(hn::CappedTag<Word, 1>(), Word(pair >> (8 * kPartLanes % 64 * part)));
+  return hn::ConvertTo(d, hn::PromoteTo(di, hn::BitCast(d8, bytes)));
 }
 
-/// Returns the floats of sixteen bytes from byte `first` on, as many as a vector has.
-template <class D>
-HWY_INLINE hn::Vec<D> PartOf(D d, const std::uint64_t (&bytes)[2], int first) {
-  constexpr std::size_t lanes = hn::MaxLanes(D());
-  const hn::Rebind<std::uint8_t, D> d8;
-  const hn::RebindToSigned<D> di;
-  const auto floats = [&](auto part) { return hn::ConvertTo(d, hn::PromoteTo(di, hn::BitCast(d8, part))); };
-#if HWY_TARGET != HWY_SCALAR  // the scalar target lacks this function
-  if constexpr (lanes == 16) {
-    const hn::Repartition<std::uint64_t, decltype(d8)> d64;
-    return floats(hn::InterleaveLower(d64, hn::Set(d64, bytes[0]), hn::Set(d64, bytes[1])));
-  } else
+/// Returns a part of the first (0) or second (1) texel of a pair.
+template <int texel, class V>
+HWY_INLINE VTexel TexelPart(const V* pair, int part) {
+  if constexpr (sizeof(V) == sizeof(VTexel)) {
+    return pair[texel * kTexelParts + part];
+#if HWY_TARGET != HWY_SCALAR  // the scalar target has no halves
+  } else {
+    const DTexel d;
+    return texel == 0 ? hn::LowerHalf(d, *pair) : hn::UpperHalf(d, *pair);
 #endif
-  {
-    using Word =
-        std::conditional_t<lanes == 8, std::uint64_t, std::conditional_t<lanes == 4, std::uint32_t, std::uint8_t>>;
-    return floats(hn::Set(hn::CappedTag<Word, 1>(), Word(bytes[first / 8] >> (8 * (first % 8)))));
   }
 }
 
-/// Adds the bilinear value of both levels to eight lanes of sums.
-template <Encoding encoding>
-HWY_INLINE void AddFiltered(const Quad& quad, const float* fraction, VSum* sums) {
-  const DPart d;
-  const DSum ds;
-  alignas(64) float columns[kLanes];
-  for (int first = 0; first < kLanes; first += kPartLanes) {
-    const MPart is_alpha = LanesOf(d, kAlpha, first);
-    const auto y = hn::IfThenElse(LanesOf(d, kFiner, first), hn::Set(d, fraction[1]), hn::Set(d, fraction[3]));
-    const auto upper = Light<encoding>(PartOf(d, quad.upper, first), is_alpha);
-    const auto lower = Light<encoding>(PartOf(d, quad.lower, first), is_alpha);
-    hn::Store(Mix(upper, lower, y), d, columns + first);
+/// The two levels of a pyramid that a fragment reads, one at a time.
+struct LevelTaps {
+  const glm::u8vec4* texels;
+  const Taps& taps;
+  int next;  ///< 1 for the next level, 0 for the finer one
+
+  /// Adds the bilinear values of the taps [begin, begin + count) to the sums of the channels.
+  template <Encoding encoding>
+  HWY_INLINE void Add(int begin, int count, VTexel* sums) const {
+    const DPair d;
+    const DTexel dt;
+    for (int n = 2 * begin + next; n < 2 * (begin + count); n += 2) {
+      const std::int32_t beside = taps.beside[n];
+      const std::uint64_t upper = PairAt(texels + taps.upper[n], beside),
+                          lower = PairAt(texels + taps.lower[n], beside);
+      const auto y = hn::Set(d, taps.place.values[2 * n + 1]);
+      VPair columns[kParts];
+      for (int part = 0; part < kParts; ++part) {
+        const MPair is_alpha = hn::Gt(hn::LoadU(d, kAlpha + part * kPartLanes), hn::Zero(d));
+        columns[part] =
+            Mix(Light<encoding>(PartOf(upper, part), is_alpha), Light<encoding>(PartOf(lower, part), is_alpha), y);
+      }
+      const auto x = hn::Set(dt, taps.place.values[2 * n]);
+      for (int part = 0; part < kTexelParts; ++part)
+        sums[part] = hn::Add(sums[part], Mix(TexelPart<0>(columns, part), TexelPart<1>(columns, part), x));
+    }
   }
-  for (int s = 0; s < kSums; ++s) {
-    const int first = s * kSumLanes;
-    const auto x = hn::IfThenElse(LanesOf(ds, kFiner, first), hn::Set(ds, fraction[0]), hn::Set(ds, fraction[2]));
-    const auto left = hn::Load(ds, columns + first), right = hn::Load(ds, columns + kLanes / 2 + first);
-    sums[s] = hn::Add(sums[s], Mix(left, right, x));
+};
+
+/// Fetches the texels of all taps ahead, because large textures are in no cache.
+void Prefetch(const Pyramid::Level* levels, const Taps& taps) {
+  for (int k = 0, n = 0; k < taps.fragments; ++k) {
+    const Pyramid::Level* const level = levels + taps.level[k];
+    const int next = taps.blend[k] > 0 ? 1 : 0;
+    for (const int end = n + 2 * taps.count[k]; n < end; n += 2) {
+      prefetch_line(level[0].texels + taps.upper[n]);
+      prefetch_line(level[0].texels + taps.lower[n]);
+      prefetch_line(level[next].texels + taps.upper[n + next]);
+      prefetch_line(level[next].texels + taps.lower[n + next]);
+    }
   }
 }
 
 template <Encoding encoding>
 void FilterAs(const Pyramid& pyramid, const Taps& taps, glm::vec4* out) {
-  const DSum d;
+  const DTexel d;
   const Pyramid::Level* const levels = pyramid.levels().data();
+  Prefetch(levels, taps);
   int at = 0;
   for (int k = 0; k < taps.fragments; ++k) {
     const float blend = taps.blend[k];
-    const bool is_blended = blend > 0;  // never in the last level
-    const Pyramid::Level &fine = levels[taps.level[k]], &coarse = (&fine)[int(is_blended)];
-    VSum sums[kSums];
-    for (VSum& sum : sums) sum = hn::Zero(d);
-    for (int t = 0; t < taps.count[k]; ++t, at += 4) {
-      const std::int32_t *first = taps.first.values + at, *second = taps.second.values + at;
-      Quad quad = QuadAt(fine, first, second);
-      if (is_blended) quad = Joined(quad, QuadAt(coarse, first + 2, second + 2));
-      AddFiltered<encoding>(quad, taps.place.values + at, sums);
+    const Pyramid::Level* const level = levels + taps.level[k];
+    VTexel fine[kTexelParts], coarse[kTexelParts];
+    for (int part = 0; part < kTexelParts; ++part) fine[part] = coarse[part] = hn::Zero(d);
+    LevelTaps{level[0].texels, taps, 0}.Add<encoding>(at, taps.count[k], fine);
+    if (blend > 0) {  // never in the last level
+      LevelTaps{level[1].texels, taps, 1}.Add<encoding>(at, taps.count[k], coarse);
+      for (int part = 0; part < kTexelParts; ++part) fine[part] = Mix(fine[part], coarse[part], hn::Set(d, blend));
     }
-    alignas(64) float mean[8];
-    for (int s = 0; s < kSums; ++s) hn::Store(sums[s], d, mean + s * kSumLanes);
-    const float scale = 1.0f / float(taps.count[k]);
-    for (int c = 0; c < 4; ++c) out[k][c] = (mean[c] + (mean[c + 4] - mean[c]) * blend) * scale;
+    const auto scale = hn::Set(d, 1.0f / float(taps.count[k]));
+    for (int part = 0; part < kTexelParts; ++part)
+      hn::StoreU(hn::Mul(fine[part], scale), d, &out[k].x + part * kTexelLanes);
+    at += taps.count[k];
   }
 }
 
@@ -319,7 +346,9 @@ void FindTaps(const TapRequest& request, Taps& taps) {
   Footprints footprints;
   FindFootprints(request, footprints);
   SpreadTaps(request, footprints, taps);
-  PlaceTaps(request.pyramid.texture(), taps);
+  TexelPlaces places;
+  PlaceTaps(request.pyramid.texture(), taps, places);
+  FindOffsets(places, taps);
 }
 
 void FilterTaps(const Pyramid& pyramid, const Taps& taps, glm::vec4* out) {

@@ -52,8 +52,8 @@ class Pyramid {
   const Texture* texture_;
   Encoding encoding_;
   std::vector<Level> levels_;
-  std::vector<std::array<float, 4>> sizes_;        ///< by level
-  std::vector<std::vector<glm::u8vec4>> storage_;  ///< texels of levels 1 and up
+  std::vector<std::array<float, 4>> sizes_;   ///< by level
+  std::vector<Buffer<glm::u8vec4>> storage_;  ///< texels of levels 1 and up
 };
 
 inline constexpr int most_taps = 8;         ///< per fragment
@@ -66,14 +66,12 @@ struct TextureSlot {
   std::uint32_t set = 0;  ///< set of texture coordinates
 };
 
-/// The taps in textures of one size. Each array holds four numbers for a tap: for u and v of its finer level, and for u
-/// and v of the next level.
+/// The taps in textures of one size. `place` and `size` hold four numbers for a tap: for u and v of its finer level,
+/// and for u and v of the next level. `upper`, `lower` and `beside` hold two, one for each level.
 struct Taps {
+  static constexpr int most = most_taps * sampled_at_once;
   struct alignas(64) Fours {
-    float values[4 * most_taps * sampled_at_once];
-  };
-  struct alignas(64) FourTexels {
-    std::int32_t values[4 * most_taps * sampled_at_once];
+    float values[4 * most];
   };
   int fragments = 0, taps = 0;
   std::uint8_t count[sampled_at_once];  ///< number of taps of each fragment
@@ -82,7 +80,9 @@ struct Taps {
   Fours place;                          ///< first the texture coordinates, later the fraction between the first and the
                                         ///< second texel
   Fours size;                           ///< size of the levels, in texels
-  FourTexels first, second;             ///< texels on either side
+  std::uint32_t upper[2 * most];        ///< offset of the upper left texel from the level's first one
+  std::uint32_t lower[2 * most];        ///< offset of the texel below it
+  std::int32_t beside[2 * most];        ///< offset from both to the texels at their right: 1 but at wrapped edges
 };
 
 /// Input for taps: the fragments [begin, begin + count), and the levels of a texture.
