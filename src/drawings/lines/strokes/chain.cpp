@@ -133,7 +133,7 @@ constexpr double least_turn = 10 * std::numbers::pi / 180;      // a smaller arc
 /// A chord that deviates from the arc by more than the tolerance is evenly stepped if, among the three chords before it
 /// and the three after it, two are at least half as long. Its two neighbours alone do not suffice, because corners of
 /// other lines may divide them.
-constexpr std::size_t reach = 3;
+constexpr std::size_t most_steps = 3;
 constexpr int fewest_alike = 2;
 constexpr double alike = 0.5;
 
@@ -217,7 +217,7 @@ struct ArcFinder {
       if (!(circle.radius - to_middle > tolerance)) continue;
       const double least = alike * length(i);
       int found = 0;
-      for (std::size_t k = 1; k <= reach; ++k) {
+      for (std::size_t k = 1; k <= most_steps; ++k) {
         if (is_ring || i >= k) found += length((i + chords - k) % chords) >= least;
         if (is_ring || i + k < chords) found += length((i + k) % chords) >= least;
       }
