@@ -9,7 +9,7 @@ namespace frontmost::test {
 inline std::vector<lines_detail::Crossing> crossings_of(const lines_detail::WeldedMesh& mesh,
                                                         const lines_detail::Features& features,
                                                         const Execution& execution) {
-  return find_crossings(mesh, features, find_crossed_pairs(mesh, features, execution), execution);
+  return find_crossings(features, find_crossed_pairs(mesh, features, execution), execution);
 }
 
 }  // namespace frontmost::test

@@ -111,6 +111,20 @@ void cut_all(const Candidates& candidates, const EdgeOccluders& occlusion, const
   drawing.parts = joined(lists, execution);
 }
 
+/// Removes the crossings of triangles that lie on opposite sides of a gap.
+void erase_at_gaps(const WeldedMesh& mesh, const VertexPairs& continued, std::vector<Crossing>& crossings) {
+  std::vector<bool> is_at_gap(mesh.positions.size(), false);
+  for (const auto& [low, high] : continued) is_at_gap[low] = is_at_gap[high] = true;
+  const auto touches = [&](std::uint32_t triangle) {
+    const glm::uvec3& t = mesh.triangles[triangle];
+    return is_at_gap[t.x] || is_at_gap[t.y] || is_at_gap[t.z];
+  };
+  std::erase_if(crossings, [&](const Crossing& crossing) {
+    return touches(crossing.left) && touches(crossing.right) &&
+           meet_at_gap(mesh, continued, crossing.left, crossing.right);
+  });
+}
+
 /// Adds to the message of a limit the place where most triangles lie over each other.
 Error with_place(const Error& error, const OccluderGrid& grid, const WeldedMesh& mesh, const Surfaces& surfaces) {
   const OccluderGrid::Crowd crowd = grid.largest_crowd();
@@ -176,11 +190,9 @@ Drawing LineDrawer::draw(const View& view, const LineOptions& options, const Exe
     std::vector<Crossing> crossings;
     if (options.intersections) {
       if (!state_->pairs) state_->pairs = find_crossed_pairs(mesh, features, execution);
-      crossings = find_crossings(mesh, features, *state_->pairs, execution);
+      crossings = find_crossings(features, *state_->pairs, execution);
     }
-    std::erase_if(crossings, [&](const Crossing& crossing) {
-      return meet_at_gap(mesh, features.continued, crossing.left, crossing.right);
-    });
+    if (!features.continued.empty()) erase_at_gaps(mesh, features.continued, crossings);
     const Candidates candidates{mesh, std::move(features.edges), std::move(crossings)};
     report_progress(execution, "lines", kCutFrom);
     const ShadowKernels kernels = shadow_kernels(execution.isa);

@@ -447,15 +447,22 @@ CrossedPairs find_crossed_pairs(const WeldedMesh& mesh, const Features& features
     crossings[begin / kGroupsPerPart] = std::move(found.crossings);
     contacts[begin / kGroupsPerPart] = std::move(found.contacts);
   });
-  CrossedPairs pairs{joined(crossings, execution), joined(contacts, execution)};
+  CrossedPairs pairs{joined(crossings, execution), segments_of(mesh, joined(contacts, execution))};
   arrange(pairs.crossings, execution);
   return pairs;
 }
 
-std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features, const CrossedPairs& pairs,
-                                     const Execution& execution) {
+std::vector<Crossing> find_crossings(const Features& features, const CrossedPairs& pairs, const Execution& execution) {
+  const auto is_drawn = [&](const std::pair<std::uint32_t, std::uint32_t>& edge) {
+    const auto ends = [](const FeatureEdge& feature) { return std::pair(feature.from, feature.to); };
+    const auto found =
+        std::lower_bound(features.edges.begin(), features.edges.end(), edge,
+                         [&](const FeatureEdge& feature, const auto& wanted) { return ends(feature) < wanted; });
+    return found != features.edges.end() && ends(*found) == edge;
+  };
   std::vector<Crossing> added;
-  add_contacts(mesh, features, pairs.contacts, added);
+  for (const ContactSegment& contact : pairs.contacts)
+    if (!is_drawn(contact.edges[0]) && !is_drawn(contact.edges[1])) added.push_back(contact.segment);
   arrange(added, execution);
   std::vector<Crossing> all;
   all.reserve(pairs.crossings.size() + added.size());

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "lines/mesh/feature_edges.h"
@@ -32,10 +33,16 @@ struct EdgeContact {
   friend auto operator<=>(const EdgeContact&, const EdgeContact&) = default;
 };
 
+/// The segment of a contact, with the edges on which it lies, the lower vertex first; one edge is given twice.
+struct ContactSegment {
+  Crossing segment;
+  std::array<std::pair<std::uint32_t, std::uint32_t>, 2> edges;
+};
+
 /// Intersections and contacts, which are the same in every view.
 struct CrossedPairs {
   std::vector<Crossing> crossings;  ///< sorted by the segments' ends, each segment once
-  std::vector<EdgeContact> contacts;
+  std::vector<ContactSegment> contacts;
 };
 
 /// The segments of all pairs of triangles that each have a corner strictly on either side of the other's plane, by
@@ -45,17 +52,15 @@ struct CrossedPairs {
 [[nodiscard]] CrossedPairs find_crossed_pairs(const WeldedMesh& mesh, const Features& features,
                                               const Execution& execution);
 
-/// The segments of the pairs and those of add_contacts(), sorted by their ends, each once. O(segments + contacts log
-/// contacts).
-[[nodiscard]] std::vector<Crossing> find_crossings(const WeldedMesh& mesh, const Features& features,
-                                                   const CrossedPairs& pairs, const Execution& execution);
+/// The segments of the pairs, and of those contacts that lie on no feature, so that every line exists once. Sorted by
+/// their ends, each once. O(segments + contacts log contacts).
+[[nodiscard]] std::vector<Crossing> find_crossings(const Features& features, const CrossedPairs& pairs,
+                                                   const Execution& execution);
 
-/// Appends a segment for each contact whose edge reaches the triangle, if the edge's own two triangles lie on different
-/// sides of the triangle's plane. If the edge lies along an edge of the triangle, a segment is appended if the
-/// triangles of both edges alternate around their common line. Edges that are drawn anyway give no segment, so that
-/// every line exists once. Ends at vertices are exact. O(triangles + contacts log contacts), or nothing without
-/// contacts.
-void add_contacts(const WeldedMesh& mesh, const Features& features, std::vector<EdgeContact> contacts,
-                  std::vector<Crossing>& crossings);
+/// A segment for each contact whose edge reaches the triangle, if the edge's own two triangles lie on different sides
+/// of the triangle's plane. If the edge lies along an edge of the triangle, there is a segment if the triangles of both
+/// edges alternate around their common line. Ends at vertices are exact. O(triangles + contacts log contacts), or
+/// nothing without contacts.
+[[nodiscard]] std::vector<ContactSegment> segments_of(const WeldedMesh& mesh, std::vector<EdgeContact> contacts);
 
 }  // namespace frontmost::lines_detail

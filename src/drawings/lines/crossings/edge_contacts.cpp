@@ -4,7 +4,8 @@
 // has corners on both sides of the plane, and yet the surfaces cross there:
 //
 //        \     |               The edge (o) lies in the plane of a third triangle, and its own two lie on different
-//    -----o----- plane         sides of it. find_crossings() lists such edges with the triangles in whose planes they
+//    -----o----- plane         sides of it. find_crossed_pairs() lists such edges with the triangles in whose planes
+//    they
 //         |                    lie. They are decided here, all together, because their neighbours have to be known.
 #include <algorithm>
 #include <optional>
@@ -76,10 +77,10 @@ class Wedges {
 };
 
 struct Contacts {
-  [[nodiscard]] std::optional<Crossing> crossing(const EdgeContact& contact) const {
+  [[nodiscard]] std::optional<ContactSegment> segment(const EdgeContact& contact) const {
     const Edge edge{contact.from, contact.to};
     const Wedge& wedge = wedges.of(edge);
-    if (wedge.count != 2 || is_drawn(edge)) return std::nullopt;
+    if (wedge.count != 2) return std::nullopt;
     const glm::uvec3& t = mesh.triangles[contact.triangle];
     const int above = turn(t.x, t.y, t.z, wedge.apexes[0]), below = turn(t.x, t.y, t.z, wedge.apexes[1]);
     if (above == 0 && below == 0) return std::nullopt;
@@ -93,14 +94,6 @@ struct Contacts {
     for (int k = 0; k < 3; ++k)
       if (sides[k] == 0 && sides[(k + 1) % 3] == 0) return along(edge, t[k], t[(k + 1) % 3]);
     return std::nullopt;
-  }
-
-  [[nodiscard]] bool is_drawn(const Edge& edge) const {
-    const auto it = std::lower_bound(features.edges.begin(), features.edges.end(), edge,
-                                     [](const FeatureEdge& feature, const Edge& wanted) {
-                                       return Edge{feature.from, feature.to} < wanted;
-                                     });
-    return it != features.edges.end() && Edge{it->from, it->to} == edge;
   }
 
   [[nodiscard]] Signed height(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t x) const {
@@ -117,10 +110,13 @@ struct Contacts {
     return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
   }
   [[nodiscard]] CrossingEnd end_at(std::uint32_t vertex) const { return {mesh.positions[vertex], {vertex, vertex}}; }
+  [[nodiscard]] static ContactSegment on(const Edge& a, const Edge& b, const Crossing& segment) {
+    return {segment, {std::pair(a.from, a.to), std::pair(b.from, b.to)}};
+  }
 
   /// The part of the edge that lies in the triangle. Precondition: the triangle has corners on both sides of the edge.
-  [[nodiscard]] std::optional<Crossing> within(const Edge& edge, const Wedge& wedge, std::uint32_t triangle,
-                                               const int (&sides)[3]) const {
+  [[nodiscard]] std::optional<ContactSegment> within(const Edge& edge, const Wedge& wedge, std::uint32_t triangle,
+                                                     const int (&sides)[3]) const {
     const glm::uvec3& t = mesh.triangles[triangle];
     const std::uint32_t apex = wedge.apexes[0];
     std::vector<CrossingEnd> ends;
@@ -141,21 +137,21 @@ struct Contacts {
                         {edge.from, edge.to}});
     }
     if (ends.size() != 2) return std::nullopt;
-    return Crossing{ends[0], ends[1], wedge.triangles[0], triangle};
+    return on(edge, edge, {ends[0], ends[1], wedge.triangles[0], triangle});
   }
 
   /// The common part of the edges `one` and p-q, if their triangles alternate around the line on which both edges lie.
-  [[nodiscard]] std::optional<Crossing> along(const Edge& one, std::uint32_t p, std::uint32_t q) const {
+  [[nodiscard]] std::optional<ContactSegment> along(const Edge& one, std::uint32_t p, std::uint32_t q) const {
     const Edge other{std::min(p, q), std::max(p, q)};
     const Wedge &own = wedges.of(one), &wedge = wedges.of(other);
-    if (wedge.count != 2 || is_drawn(other)) return std::nullopt;
+    if (wedge.count != 2) return std::nullopt;
     if (place_in(one, wedge, 0) * place_in(one, wedge, 1) >= 0) return std::nullopt;
     const auto ordered = [&](Edge e) { return is_before(e.from, e.to) ? e : Edge{e.to, e.from}; };
     const Edge a = ordered(one), b = ordered(other);
     const std::uint32_t from = is_before(a.from, b.from) ? b.from : a.from, to = is_before(a.to, b.to) ? a.to : b.to;
     if (!is_before(from, to)) return std::nullopt;
     const auto [left, right] = std::minmax(own.triangles[0], wedge.triangles[0]);
-    return Crossing{end_at(from), end_at(to), left, right};
+    return on(one, other, {end_at(from), end_at(to), left, right});
   }
 
   /// Where a triangle of `other` lies around an edge: 1 between its two triangles in one sense of rotation, -1 between
@@ -183,20 +179,20 @@ struct Contacts {
   }
 
   const WeldedMesh& mesh;
-  const Features& features;
   const Wedges wedges;
 };
 
 }  // namespace
 
-void add_contacts(const WeldedMesh& mesh, const Features& features, std::vector<EdgeContact> contacts,
-                  std::vector<Crossing>& crossings) {
-  if (contacts.empty()) return;
+std::vector<ContactSegment> segments_of(const WeldedMesh& mesh, std::vector<EdgeContact> contacts) {
+  if (contacts.empty()) return {};
   std::sort(contacts.begin(), contacts.end());
   contacts.erase(std::unique(contacts.begin(), contacts.end()), contacts.end());
-  const Contacts all{mesh, features, Wedges(mesh, contacts)};
+  const Contacts all{mesh, Wedges(mesh, contacts)};
+  std::vector<ContactSegment> segments;
   for (const EdgeContact& contact : contacts)
-    if (const std::optional<Crossing> found = all.crossing(contact)) crossings.push_back(*found);
+    if (const std::optional<ContactSegment> found = all.segment(contact)) segments.push_back(*found);
+  return segments;
 }
 
 }  // namespace frontmost::lines_detail

@@ -483,7 +483,6 @@ Features find_features(const SeenMesh& seen, const CornerTable& table, const Sur
 }
 
 bool meet_at_gap(const WeldedMesh& mesh, const VertexPairs& continued, std::uint32_t a, std::uint32_t b) {
-  if (continued.empty()) return false;
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k) {
       const std::pair<std::uint32_t, std::uint32_t> pair = std::minmax({mesh.triangles[a][i], mesh.triangles[b][k]});
