@@ -31,20 +31,18 @@ constexpr float kNormalRounding = 2e-6f;    // of a product of two normals, at m
 constexpr double kWidestGap = 1.0 / 65536;  // share of the scene's diagonal: 1/200 mm on A4 paper
 
 struct Classifier {
-  Classifier(const SeenMesh& its_seen, const Surfaces& its_surfaces, const LineOptions& its_options)
+  Classifier(const SeenMesh& its_seen, const LineOptions& its_options)
       : mesh(its_seen.mesh),
         seen(its_seen),
-        surfaces(its_surfaces),
         options(its_options),
         cosine(options.crease_angle ? std::cos(*options.crease_angle) : kLeastFoldCosine),
-        has_borders(options.borders && !is_one_surface(surfaces.scene())) {}
+        has_borders(options.borders && !mesh.surfaces.empty()) {}
 
-  /// An edge of two triangles wound and facing alike is no feature if the cosine of their normals is higher.
-  [[nodiscard]] float plain_cosine() const {
-    if (has_borders || takes_stated_edges()) return std::numeric_limits<float>::infinity();
-    if (!options.creases) return -std::numeric_limits<float>::infinity();
+  [[nodiscard]] PlainEdges plain_edges() const {
     // A zero normal means that the normal is unknown. With a limit below 0, its edges would count as plain.
-    return std::max(float(cosine), 0.0f) + kNormalRounding;
+    const float least =
+        options.creases ? std::max(float(cosine), 0.0f) + kNormalRounding : -std::numeric_limits<float>::infinity();
+    return {least, has_borders, takes_stated_edges()};
   }
 
   /// A crease angle that the caller asks for outweighs the edges that meshes state.
@@ -58,18 +56,10 @@ struct Classifier {
     return kind_in_every_view(pair);
   }
   [[nodiscard]] std::optional<EdgeKind> kind_in_every_view(const SidePair& pair) const {
-    if (has_borders && !(surface_of(pair.first.triangle) == surface_of(pair.second.triangle))) return EdgeKind::border;
+    if (has_borders && !(mesh.surface_of(pair.first.triangle) == mesh.surface_of(pair.second.triangle)))
+      return EdgeKind::border;
     if (options.creases && is_crease(pair.first, pair.second)) return EdgeKind::crease;
     return std::nullopt;
-  }
-
-  [[nodiscard]] SurfaceOf surface_of(std::uint32_t triangle) const {
-    const PrimitiveSource source = surfaces.source(mesh.ids[triangle]);
-    return {source.instance, surfaces.scene().meshes[source.mesh].material_of(source.triangle)};
-  }
-
-  [[nodiscard]] std::uint32_t instance_of(std::uint32_t triangle) const {
-    return surfaces.source(mesh.ids[triangle]).instance;
   }
 
   /// The side of the edge, as seen from the eye, on which no triangle lies: 1 or -1; 0 if triangles lie on both sides.
@@ -86,13 +76,13 @@ struct Classifier {
   /// The side of the plane through the eye and the edge on which the triangle lies: 1 or -1, whatever its winding.
   [[nodiscard]] int side_of(const Side& side) const { return seen.facing[side.triangle] * (side.is_forward ? 1 : -1); }
 
-  static bool is_one_surface(const Scene& scene) {
-    return scene.instances.size() == 1 && scene.meshes[scene.instances[0].mesh].material_ids.empty();
-  }
   [[nodiscard]] bool is_crease(const Side& a, const Side& b) const {
     if (takes_stated_edges()) {
       if (mesh.stated.are_sharp(a.upper, third_of(mesh.triangles[a.triangle], a.upper, a.opposite))) return true;
-      if (mesh.stated.cover(instance_of(a.triangle)) || mesh.stated.cover(instance_of(b.triangle))) return false;
+      const auto is_covered = [&](const Side& side) {
+        return mesh.stated.cover(mesh.surface_of(side.triangle).instance);
+      };
+      if (is_covered(a) || is_covered(b)) return false;
     }
     // Neighbours that run along their edge the same way are wound against each other.
     const glm::dvec3 n = normal_of(mesh, a.triangle), m = normal_of(mesh, b.triangle);
@@ -107,7 +97,6 @@ struct Classifier {
 
   const WeldedMesh& mesh;
   const SeenMesh& seen;
-  const Surfaces& surfaces;
   const LineOptions& options;
   const double cosine;  ///< the least of the angle by which a continuing surface turns
   const bool has_borders;
@@ -249,7 +238,7 @@ struct Gaps {
     const std::uint32_t own = side.edge.left, its = other.edge.left;  // triangles
     return glm::dot(side.ahead, other.ahead) < -kAcross && std::abs(cosine) > classifier.cosine &&
            seen.facing[own] != 0 && seen.facing[own] == seen.facing[its] * (cosine < 0 ? -1 : 1) &&
-           classifier.surface_of(own) == classifier.surface_of(its);
+           seen.mesh.surface_of(own) == seen.mesh.surface_of(its);
   }
 };
 
@@ -358,7 +347,7 @@ std::optional<Drawn> drawn_of(std::span<const Side> sides, std::span<const Side>
     return first_of({&pair, 1}, classifier);
   }
   if (distinct.size() > 2) {
-    const auto surface_of = [&](std::uint32_t triangle) { return classifier.surface_of(triangle); };
+    const auto surface_of = [&](std::uint32_t triangle) { return classifier.mesh.surface_of(triangle); };
     if (const auto pairs = paired_sides(sides, surface_of)) return first_of(*pairs, classifier);
   }
   if (!classifier.options.boundaries) return std::nullopt;
@@ -447,7 +436,7 @@ CornerTable corner_table(const WeldedMesh& mesh, const Execution& execution) {
 
 Features find_features(const SeenMesh& seen, const CornerTable& table, const Surfaces& surfaces,
                        const LineOptions& options, const Execution& execution) {
-  const Classifier classifier(seen, surfaces, options);
+  const Classifier classifier(seen, options);
   const StarsKernel find_stars = stars_kernel(execution.isa);
   const std::size_t vertices = seen.mesh.positions.size();
   const std::size_t parts = (vertices + kVerticesPerPart - 1) / kVerticesPerPart;
@@ -458,7 +447,7 @@ Features find_features(const SeenMesh& seen, const CornerTable& table, const Sur
     Features found;
     std::vector<Side> sides;
     Buffer<Star> stars(end - begin);
-    find_stars(seen, table, classifier.plain_cosine(), begin, end, stars.data());
+    find_stars(seen, table, classifier.plain_edges(), begin, end, stars.data());
     for (std::size_t i = begin; i < end; ++i) {
       const auto v = std::uint32_t(i);
       const Star& star = stars[i - begin];

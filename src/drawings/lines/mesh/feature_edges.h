@@ -49,11 +49,6 @@ struct Side {
 /// Two sides of one edge across which a surface continues.
 using SidePair = std::pair<Side, Side>;
 
-/// The object and the material that a triangle belongs to.
-struct SurfaceOf {
-  std::uint32_t instance, material;
-  friend bool operator==(const SurfaceOf&, const SurfaceOf&) = default;
-};
 using SurfaceOfTriangle = std::function<SurfaceOf(std::uint32_t triangle)>;
 
 /// Pairs the sides of an edge with more than two opposite vertices, so that each pair belongs to one surface. Sides of

@@ -96,8 +96,13 @@ Buffer<std::uint32_t> number_places(const Scene& scene, Positions& positions, co
   return numbers;
 }
 
-/// Three place numbers for each primitive; the first is no_index if the primitive is left out.
-Buffer<glm::uvec3> corners_of(const Surfaces& surfaces, const Buffer<std::uint32_t>& numbers,
+bool is_one_surface(const Scene& scene) {
+  return scene.instances.size() == 1 && scene.meshes[scene.instances[0].mesh].material_ids.empty();
+}
+
+/// Three place numbers for each primitive; the first is no_index if the primitive is left out. Fills `owners` unless
+/// the scene is one surface.
+Buffer<glm::uvec3> corners_of(const Surfaces& surfaces, const Buffer<std::uint32_t>& numbers, Buffer<SurfaceOf>& owners,
                               const Execution& execution) {
   const Scene& scene = surfaces.scene();
   const std::vector<std::size_t> vertices = firsts_of(scene, [](const Mesh& mesh) { return mesh.positions.size(); });
@@ -106,15 +111,18 @@ Buffer<glm::uvec3> corners_of(const Surfaces& surfaces, const Buffer<std::uint32
     throw Error(ErrorCode::limit_exceeded, "lines",
                 "more than " + std::to_string(Corner::most_triangles) + " triangles over all instances");
   Buffer<glm::uvec3> all(firsts.back());
+  if (!is_one_surface(scene)) owners = Buffer<SurfaceOf>(all.size());
   parallel_for(execution, all.size(), kWeldedPerPart, [&](std::size_t begin, std::size_t end) {
     visit_instances(firsts, begin, end, [&](std::size_t i, std::size_t first, std::size_t last) {
-      const std::vector<glm::uvec3>& triangles = scene.meshes[scene.instances[i].mesh].triangles;
+      const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+      const std::vector<glm::uvec3>& triangles = mesh.triangles;
       const bool is_mirrored = surfaces.is_mirrored(std::uint32_t(i));
       for (std::size_t t = first; t < last; ++t) {
         glm::uvec3 c;
         for (int k = 0; k < 3; ++k) c[k] = numbers[vertices[i] + triangles[t][is_mirrored && k > 0 ? 3 - k : k]];
         if (c.y == no_index || c.z == no_index || c.x == c.y || c.y == c.z || c.z == c.x) c.x = no_index;
         all[firsts[i] + t] = c;
+        if (!owners.empty()) owners[firsts[i] + t] = {std::uint32_t(i), mesh.material_of(std::uint32_t(t))};
       }
     });
   });
@@ -335,7 +343,7 @@ void leave_out(WeldedMesh& mesh, const std::vector<std::uint32_t>& ascending) {
 WeldedMesh weld(const Surfaces& surfaces, const Execution& execution) {
   WeldedMesh welded;
   const Buffer<std::uint32_t> numbers = number_places(surfaces.scene(), welded.positions, execution);
-  Buffer<glm::uvec3> all = corners_of(surfaces, numbers, execution);
+  Buffer<glm::uvec3> all = corners_of(surfaces, numbers, welded.surfaces, execution);
   welded.stated =
       StatedEdges(surfaces.scene(), numbers, all, {welded.positions.places.data(), welded.positions.size()}, execution);
   const auto is_kept = [&](std::size_t id) { return all[id].x != no_index; };

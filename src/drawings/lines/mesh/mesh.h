@@ -27,12 +27,23 @@ struct Positions {
   [[nodiscard]] glm::dvec3 operator[](std::size_t vertex) const { return glm::dvec3(places[vertex]); }
 };
 
+/// The object and the material that a triangle belongs to.
+struct SurfaceOf {
+  std::uint32_t instance, material;
+  friend bool operator==(const SurfaceOf&, const SurfaceOf&) = default;
+};
+
 struct WeldedMesh {
   Positions positions;
   /// Each has three different vertices, counter-clockwise as seen from the front.
   Buffer<glm::uvec3> triangles;
   Buffer<PrimitiveId> ids;  ///< ids of the triangles
   StatedEdges stated;
+  Buffer<SurfaceOf> surfaces;  ///< by primitive id; empty if the scene is one object of one material
+
+  [[nodiscard]] SurfaceOf surface_of(std::uint32_t triangle) const {
+    return surfaces.empty() ? SurfaceOf{0, 0} : surfaces[ids[triangle]];
+  }
 };
 
 /// Welds the triangles of a scene. Triangles with a vertex that is not finite are left out, and triangles with two
@@ -146,9 +157,15 @@ struct Star {
   std::uint16_t asked;
 };
 
-/// Finds the stars of the vertices from `begin` to `end`. An edge is plain if its two triangles face the same way and
-/// the cosine between their normals, computed in floats, is more than `plain_cosine`.
-using StarsKernel = void (*)(const SeenMesh& seen, const CornerTable& table, float plain_cosine, std::size_t begin,
+/// The edges that are no features, if both vertices have is_paired.
+struct PlainEdges {
+  float least_cosine;  ///< the least cosine between the normals of an edge's two triangles, computed in floats
+  bool has_borders;    ///< whether the two belong to one surface
+  bool has_stated;     ///< whether the lower vertex begins no stated edge
+};
+
+/// Finds the stars of the vertices from `begin` to `end`. The two triangles of a plain edge also face the same way.
+using StarsKernel = void (*)(const SeenMesh& seen, const CornerTable& table, const PlainEdges& plain, std::size_t begin,
                              std::size_t end, Star* stars);
 [[nodiscard]] StarsKernel stars_kernel(Isa isa);
 

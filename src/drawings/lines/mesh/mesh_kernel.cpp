@@ -172,19 +172,29 @@ struct StarCorners {
     }
     return ((turns | turns >> 3) & once & ~again & 7) != 0;
   }
-  HWY_INLINE std::uint16_t Asked(std::uint32_t vertex, float plain_cosine) const {
+  HWY_INLINE std::uint16_t Asked(std::uint32_t vertex, float least_cosine) const {
     std::uint32_t asked = 0;
     for (std::size_t j = 0; j < count; ++j) {
       const SeenTriangle &a = *triangle[j], &b = *triangle[partner[j]];
       const float cosine = a.normal.x * b.normal.x + a.normal.y * b.normal.y + a.normal.z * b.normal.z;
-      const bool is_plain = int(a.facing() == b.facing()) & int(cosine > plain_cosine);
+      const bool is_plain = int(a.facing() == b.facing()) & int(cosine > least_cosine);
       asked |= std::uint32_t(int(last[j] > vertex) & int(!is_plain)) << j;
     }
     return std::uint16_t(asked);
   }
+  /// Bits as for Star::asked: edges between different surfaces.
+  HWY_INLINE std::uint16_t Borders(std::uint32_t vertex, const WeldedMesh& mesh,
+                                   std::span<const Corner> corners) const {
+    SurfaceOf surface[Star::most];
+    for (std::size_t j = 0; j < count; ++j) surface[j] = mesh.surface_of(corners[j].triangle());
+    std::uint32_t found = 0;
+    for (std::size_t j = 0; j < count; ++j)
+      found |= std::uint32_t(int(last[j] > vertex) & int(!(surface[j] == surface[partner[j]]))) << j;
+    return std::uint16_t(found);
+  }
 };
 
-void Stars(const SeenMesh& seen, const CornerTable& table, float plain_cosine, std::size_t begin, std::size_t end,
+void Stars(const SeenMesh& seen, const CornerTable& table, const PlainEdges& plain, std::size_t begin, std::size_t end,
            Star* stars) {
   for (std::size_t v = begin; v < end; ++v) {
     Star& star = stars[v - begin];
@@ -193,7 +203,10 @@ void Stars(const SeenMesh& seen, const CornerTable& table, float plain_cosine, s
     if (at.size() > Star::most) continue;
     StarCorners corners(seen, at);
     if (!corners.Pair()) continue;
-    star = {true, corners.IsSpread(at), corners.Asked(std::uint32_t(v), plain_cosine)};
+    const bool asks_all = plain.has_stated && seen.mesh.stated.begin_at(v);
+    const float least = asks_all ? std::numeric_limits<float>::infinity() : plain.least_cosine;
+    star = {true, corners.IsSpread(at), corners.Asked(std::uint32_t(v), least)};
+    if (plain.has_borders) star.asked |= corners.Borders(std::uint32_t(v), seen.mesh, at);
   }
 }
 
