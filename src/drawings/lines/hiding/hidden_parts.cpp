@@ -65,6 +65,14 @@ Interval in_shadow(const Occluder& occluder, const SightedEdge& edge, const Sigh
   return hidden;
 }
 
+/// Whether a constructed end of the edge may lie in a plane of the occluder by the numbers of vertices.
+bool has_constructed_end(const Occluder& occluder, const SightedEdge& edge) {
+  const auto& v = occluder.vertices;
+  const auto has = [&](std::uint32_t vertex) { return vertex == v[0] || vertex == v[1] || vertex == v[2]; };
+  const auto holds = [&](const EndOn& on) { return has(on[0]) && has(on[1]); };
+  return edge.slack > 0 && (holds(edge.from_on) || holds(edge.to_on));
+}
+
 bool is_own(const Occluder& occluder, const SightedEdge& edge) {
   return occluder.triangle == edge.own[0] || occluder.triangle == edge.own[1];
 }
@@ -191,7 +199,7 @@ bool hold_against_batch(const EdgeQuestion& question, EdgeSearch& search) {
     const auto i = std::size_t(std::countr_zero(bits));
     const Occluder& occluder = *search.batch.occluders[i];
     Interval interval{found.begin[i], found.end[i]};
-    if ((found.open >> i & 1) || occluder.is_near || edge.slack > 0)
+    if ((found.open >> i & 1) || occluder.is_near || is_own(occluder, edge) || has_constructed_end(occluder, edge))
       interval = (question.hides() ? hidden_by : covered_by)(occluder, edge, question.o.sight);
     search.hidden.add(overlap(interval, question.span), occluder.triangle);
   }

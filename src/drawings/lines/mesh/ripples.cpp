@@ -52,11 +52,13 @@ class RippleFinder {
           if (triangle == edge.left || triangle == edge.right) continue;
           if (!(glm::dot(normal_at(triangle), normal) > kGoesOnAlike)) continue;
           if (!is_ahead(mesh_.triangles[triangle])) continue;
-          const Flat flat = on_picture(mesh_.triangles[triangle]);
-          const auto still = std::remove_if(open.begin(), open.begin() + std::ptrdiff_t(open_count),
-                                            [&](const glm::dvec2& place) { return covers(flat, place); });
-          open_count = std::size_t(still - open.begin());
-          if (open_count == 0) return true;
+          if (reaches_out(mesh_.triangles[triangle], open[0].y)) {
+            const Flat flat = on_picture(mesh_.triangles[triangle]);
+            const auto still = std::remove_if(open.begin(), open.begin() + std::ptrdiff_t(open_count),
+                                              [&](const glm::dvec2& place) { return covers(flat, place); });
+            open_count = std::size_t(still - open.begin());
+            if (open_count == 0) return true;
+          }
           for (const std::uint32_t vertex : {corner.next(mesh_), corner.last(mesh_)})
             if (std::find(vertices_.begin(), vertices_.end(), vertex) == vertices_.end()) vertices_.push_back(vertex);
         }
@@ -93,6 +95,11 @@ class RippleFinder {
     };
     return seen_.sight.is_parallel() ||
            (is_vertex_ahead(triangle.x) && is_vertex_ahead(triangle.y) && is_vertex_ahead(triangle.z));
+  }
+  /// Whether a corner lies on the side of the edge on which `y` is. Precondition: all corners lie before the eye.
+  [[nodiscard]] bool reaches_out(const glm::uvec3& triangle, double y) const {
+    const auto is_out = [&](std::uint32_t vertex) { return glm::dot(mesh_.positions[vertex] - origin_, y_) * y > 0; };
+    return is_out(triangle.x) || is_out(triangle.y) || is_out(triangle.z);
   }
   [[nodiscard]] glm::dvec2 on_picture(std::uint32_t vertex) const {
     const glm::dvec3 from_origin = mesh_.positions[vertex] - origin_;
