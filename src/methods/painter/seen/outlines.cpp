@@ -21,13 +21,17 @@ std::size_t next(std::size_t i, std::size_t count) { return i + 1 == count ? 0 :
 }  // namespace
 
 bool is_narrow(Outline outline, double width) {
-  double area = 0, border = 0;
+  double area = 0, most_border = 0, border = 0;
   const glm::dvec2 from(outline[0].at);
   for (std::size_t i = 0; i < outline.size(); ++i) {
-    const glm::dvec2 p(outline[i].at), q(outline[next(i, outline.size())].at);
+    const glm::dvec2 p(outline[i].at), q(outline[next(i, outline.size())].at), way = q - p;
     area += turn(p - from, q - from);
-    border += glm::length(q - p);
+    most_border += std::abs(way.x) + std::abs(way.y);
   }
+  // Most outlines are so wide that their border needs no roots.
+  if (constexpr double spare = 1.001; std::abs(area) > spare * width * most_border) return false;
+  for (std::size_t i = 0; i < outline.size(); ++i)
+    border += glm::length(glm::dvec2(outline[next(i, outline.size())].at) - glm::dvec2(outline[i].at));
   return !(std::abs(area) > width * border);
 }
 
@@ -41,7 +45,8 @@ void OutlineClipper::add(Outline outline) {
   parts_.push_back(part);
 }
 
-OutlineClipper::Place OutlineClipper::place(Outline outline, const glm::dvec2& p, const glm::dvec2& q, Line& line) {
+inline OutlineClipper::Place OutlineClipper::place(Outline outline, const glm::dvec2& p, const glm::dvec2& q,
+                                                   Line& line) {
   const glm::dvec2 way = q - p;
   double least = std::numeric_limits<double>::infinity(), greatest = -least;
   for (const PaintCorner& corner : outline) {
@@ -68,38 +73,39 @@ bool OutlineClipper::parts(Outline a, Outline b) {
   return false;
 }
 
-OutlineClipper::Place OutlineClipper::split(const Line& line) {
-  const std::size_t count = inside_.size();
-  distances_.resize(count);
+OutlineClipper::Place OutlineClipper::split(Outline outline, const Line& line, bool keeps_inside) {
+  const std::size_t count = outline.size();
+  if (distances_.size() < count) distances_.resize(count);
+  double* const distances = distances_.data();
   double least = 0, greatest = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    distances_[i] = turn(line.along, glm::dvec2(inside_[i].at) - line.from);
-    least = std::min(least, distances_[i]);
-    greatest = std::max(greatest, distances_[i]);
+    distances[i] = turn(line.along, glm::dvec2(outline[i].at) - line.from);
+    least = std::min(least, distances[i]);
+    greatest = std::max(greatest, distances[i]);
   }
   if (greatest < thin) return Place::inside;
   if (least > -thin) return Place::outside;
-  std::swap(rest_, inside_);
-  inside_.clear();
-  outside_.clear();
+  inside_.begin(2 * count);
+  outside_.begin(2 * count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t after = next(i, count);
-    const PaintCorner& corner = rest_[i];
-    const double a = distances_[i], b = distances_[after];
-    if (a <= 0) inside_.push_back(corner);
-    if (a > 0) outside_.push_back(corner);
-    if ((a <= 0) == (b <= 0)) continue;
-    const PaintCorner cut{corner.at + (rest_[after].at - corner.at) * (a / (a - b)), corner.is_cut};
+    const PaintCorner& corner = outline[i];
+    const double a = distances[i], b = distances[after];
+    const bool is_inside = a <= 0;
+    if (!is_inside) outside_.add(corner);
+    if (is_inside && keeps_inside) inside_.add(corner);
+    if (is_inside == (b <= 0)) continue;
+    const PaintCorner cut{corner.at + (outline[after].at - corner.at) * (a / (a - b)), corner.is_cut};
     const PaintCorner bend{cut.at, true};
-    inside_.push_back(a <= 0 ? bend : cut);
-    outside_.push_back(a <= 0 ? cut : bend);
+    outside_.add(is_inside ? cut : bend);
+    if (keeps_inside) inside_.add(is_inside ? bend : cut);
   }
   return Place::both;
 }
 
 /// \returns true if the part is to be removed; what remains of it was added.
 bool OutlineClipper::subtract_from(std::size_t part, Outline cover, bool may_split) {
-  const Outline outline = (*this)[part];
+  Outline outline = (*this)[part];
   lines_.clear();
   for (std::size_t i = 0; i < cover.size(); ++i) {
     Line line{};
@@ -109,16 +115,18 @@ bool OutlineClipper::subtract_from(std::size_t part, Outline cover, bool may_spl
   }
   if (lines_.empty()) return true;
   if (!may_split || parts(outline, cover)) return false;
-  inside_.assign(outline.begin(), outline.end());
   const std::size_t parts_before = parts_.size(), corners_before = corners_.size();
   for (const Line& line : lines_) {
-    const Place found = split(line);
+    const Place found = split(outline, line, &line != &lines_.back());
     if (found == Place::outside) {
       parts_.resize(parts_before);
       corners_.resize(corners_before);
       return false;
     }
-    if (found == Place::both && !is_narrow(outside_, thin)) add(outside_);
+    if (found == Place::inside) continue;
+    if (!is_narrow(outside_.outline(), thin)) add(outside_.outline());
+    std::swap(rest_, inside_);
+    outline = rest_.outline();
   }
   return true;
 }
@@ -128,7 +136,9 @@ bool OutlineClipper::subtract(const Cover& cover) {
   const bool may_split = count <= kMostParts;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    if (is_apart(parts_[i], cover) || !subtract_from(i, cover.outline, may_split)) parts_[kept++] = parts_[i];
+    if (!is_apart(parts_[i], cover) && subtract_from(i, cover.outline, may_split)) continue;
+    if (kept != i) parts_[kept] = parts_[i];
+    ++kept;
   }
   if (kept == count) return count == 0;
   parts_.erase(parts_.begin() + std::ptrdiff_t(kept), parts_.begin() + std::ptrdiff_t(count));
@@ -146,12 +156,14 @@ void OutlineClipper::keep_within(const glm::dvec2& low, const glm::dvec2& high) 
       continue;
     }
     is_changed_ = true;
-    inside_.assign(corners_.begin() + std::ptrdiff_t(part.first),
-                   corners_.begin() + std::ptrdiff_t(part.first + part.count));
-    if (std::all_of(std::begin(sides), std::end(sides),
-                    [&](const Line& side) { return split(side) != Place::outside; }) &&
-        !is_narrow(inside_, thin))
-      add(inside_);
+    rest_.begin(part.count);
+    for (std::size_t i = 0; i < part.count; ++i) rest_.add(corners_[part.first + i]);
+    const bool is_left = std::all_of(std::begin(sides), std::end(sides), [&](const Line& side) {
+      const Place found = split(rest_.outline(), side, true);
+      if (found == Place::both) std::swap(rest_, inside_);
+      return found != Place::outside;
+    });
+    if (is_left && !is_narrow(rest_.outline(), thin)) add(rest_.outline());
   }
 }
 

@@ -95,6 +95,20 @@ class OutlineClipper {
     glm::dvec2 from, along;
   };
   enum class Place : std::uint8_t { inside, outside, both };
+  /// Corners in memory that is kept from outline to outline.
+  class CornerList {
+   public:
+    void begin(std::size_t most) {
+      if (corners_.size() < most) corners_.resize(most);
+      count_ = 0;
+    }
+    void add(const PaintCorner& corner) { corners_[count_++] = corner; }
+    [[nodiscard]] Outline outline() const { return {corners_.data(), count_}; }
+
+   private:
+    std::vector<PaintCorner> corners_;
+    std::size_t count_ = 0;
+  };
 
   /// The place of `outline` relative to the line from p to q. Sets `line` if the result is `both`.
   static Place place(Outline outline, const glm::dvec2& p, const glm::dvec2& q, Line& line);
@@ -102,13 +116,13 @@ class OutlineClipper {
   static bool parts(Outline a, Outline b);
   void add(Outline outline);
   bool subtract_from(std::size_t part, Outline cover, bool may_split);
-  /// Splits inside_ by a line: keeps the part on the inner side, and puts the rest into outside_. \returns the place of
-  /// inside_ before.
-  Place split(const Line& line);
+  /// Splits an outline by a line. If the result is `both`, sets outside_, and inside_ if `keeps_inside` is true.
+  /// \returns the place of the outline.
+  Place split(Outline outline, const Line& line, bool keeps_inside);
 
   std::vector<PaintCorner> corners_;  ///< corners of all parts since begin(), including removed parts
   std::vector<Part> parts_;
-  std::vector<PaintCorner> rest_, inside_, outside_;
+  CornerList rest_, inside_, outside_;
   std::vector<double> distances_;
   std::vector<Line> lines_;
   bool is_changed_ = false;

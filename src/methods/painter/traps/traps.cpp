@@ -111,8 +111,8 @@ bool is_beside(Outline outline, const glm::dvec2& from, const glm::dvec2& way) {
 
 /// Finds the occluders around one polygon after another. A trap is hidden by occluders that are painted after the
 /// polygon, and by occluders of the polygon's own group wherever they are in the order, because they look the same. The
-/// occluders around a polygon are listed once for all questions about it, and most polygons have few. Not for several
-/// threads at once.
+/// occluders around a polygon are listed when a question first needs them, once for all questions about it, and most
+/// polygons have few. Not for several threads at once.
 class NearbyOccluders {
  public:
   NearbyOccluders(const ScreenPolygons& screen, const Adjacency& adjacency, PaintEffort& effort)
@@ -121,23 +121,22 @@ class NearbyOccluders {
   /// Selects the polygon in a slot, and occluders up to `reach` pixels around it.
   void begin(std::size_t slot, double reach) {
     slot_ = slot;
-    PolygonExtent box = box_of(screen_.outline(slot));
-    box.low -= float(reach);
-    box.high += float(reach);
-    const PieceGrid::Range cells = screen_.grid().range(box);
-    is_listed_ = cells.count() <= kMostCells;
-    if (is_listed_) list(box);
+    around_ = box_of(screen_.outline(slot));
+    around_.low -= float(reach);
+    around_.high += float(reach);
+    is_listed_ = false;
   }
   /// Returns whether this side is shared with another polygon that has an area and hides nothing beyond the side.
   [[nodiscard]] bool are_open_beside(std::size_t side) const {
-    const std::uint32_t across = adjacency_.across(screen_.first_corner(slot_) + side);
+    const std::uint32_t across = across_of(side);
     if (across == no_index) return false;
-    const bool may_hide = screen_.place(across) >= screen_.first_place(slot_) && screen_.is_occluder(across);
     // If the polygon across has no area, other polygons begin beyond it.
-    return across == slot_ || (!may_hide && !is_flat(screen_.outline(across)));
+    return across == slot_ || (!may_hide(across) && !is_flat(screen_.outline(across)));
   }
   /// Returns whether anything hides points next to a side of the polygon, on its outer side.
-  [[nodiscard]] bool hide_beside(const glm::dvec2& from, const glm::dvec2& to) {
+  [[nodiscard]] bool hide_beside(std::size_t side, const glm::dvec2& from, const glm::dvec2& to) {
+    const std::uint32_t across = across_of(side);
+    if (across != no_index && may_hide(across) && is_beside(screen_.outline(across), from, to - from)) return true;
     PolygonExtent box{glm::min(glm::vec2(from), glm::vec2(to)), glm::max(glm::vec2(from), glm::vec2(to)), 0, 0};
     box.low -= float(2 * OutlineClipper::thin);
     box.high += float(2 * OutlineClipper::thin);
@@ -159,6 +158,13 @@ class NearbyOccluders {
     glm::vec2 low, high;  ///< the box around its outline, in pixels
     std::uint32_t slot;
   };
+  /// Returns the slot of the polygon across a side, or no_index.
+  [[nodiscard]] std::uint32_t across_of(std::size_t side) const {
+    return adjacency_.across(screen_.first_corner(slot_) + side);
+  }
+  [[nodiscard]] bool may_hide(std::uint32_t other) const {
+    return other != slot_ && screen_.place(other) >= screen_.first_place(slot_) && screen_.is_occluder(other);
+  }
   /// Sets hiders_ to occluders whose boxes overlap `box`.
   void list(const PolygonExtent& box) {
     if (++turn_ == 0) {
@@ -187,7 +193,10 @@ class NearbyOccluders {
   /// Calls visit(hider) for occluders whose boxes overlap `box`, until it returns true. \returns whether it did.
   template <class Visit>
   bool any_of(const PolygonExtent& box, const Visit& visit) {
-    if (!is_listed_) list(box);
+    if (!is_listed_) {
+      is_listed_ = screen_.grid().range(around_).count() <= kMostCells;
+      list(is_listed_ ? around_ : box);
+    }
     return std::any_of(hiders_.begin(), hiders_.end(), [&](const Hider& hider) {
       if (is_apart(hider, box)) return false;
       poll_.count();
@@ -200,7 +209,8 @@ class NearbyOccluders {
   Poll poll_;
   OutlineClipper cutter_;
   std::size_t slot_ = 0;
-  bool is_listed_ = false;  ///< hiders_ holds all occluders around the polygon
+  PolygonExtent around_{};  ///< the box around the polygon and everything within reach
+  bool is_listed_ = false;  ///< hiders_ holds all occluders in around_
   std::vector<Hider> hiders_;
   std::vector<std::uint32_t> listed_;  ///< by slot: the turn in which it was listed last
   std::uint32_t turn_ = 0;
@@ -220,17 +230,16 @@ class TrapProfile {
   void begin(const glm::dvec2& from, const glm::dvec2& way) {
     from_ = from;
     way_ = way;
-    corners_.clear();
-    parts_.clear();
+    rims_.clear();
   }
   /// Adds parts beside the side that are not hidden.
   void add_open(const OutlineClipper& open) {
     for (std::size_t i = 0; i < open.count(); ++i) {
-      parts_.push_back({corners_.size(), open[i].size()});
+      glm::dvec2 before = placed(open[i].back());
       for (const PaintCorner& corner : open[i]) {
-        const glm::dvec2 at = glm::dvec2(corner.at) - from_;
-        const double height = std::max(0.0, way_.x * at.y - way_.y * at.x);
-        corners_.push_back({glm::dot(way_, at), height - std::min(kProfileMargin, kProfileMarginPart * height)});
+        const glm::dvec2 at = placed(corner);
+        rims_.push_back({before, at});
+        before = at;
       }
     }
   }
@@ -245,19 +254,23 @@ class TrapProfile {
   }
 
  private:
-  struct Part {
-    std::size_t first, count;
+  /// A side of an open part, between two points (along the side of the polygon, above it).
+  struct Rim {
+    glm::dvec2 from, to;
   };
+  [[nodiscard]] glm::dvec2 placed(const PaintCorner& corner) const {
+    const glm::dvec2 at = glm::dvec2(corner.at) - from_;
+    const double height = std::max(0.0, way_.x * at.y - way_.y * at.x);
+    return {glm::dot(way_, at), height - std::min(kProfileMargin, kProfileMarginPart * height)};
+  }
   [[nodiscard]] double height_at(double along, double most) const {
     double least = most;
-    for (const glm::dvec2& corner : corners_)
-      least = std::min(least, corner.y + kSteepest * std::abs(along - corner.x));
-    for (const Part& part : parts_)
-      for (std::size_t i = 0; i < part.count; ++i) {
-        const glm::dvec2 &a = corners_[part.first + i], &b = corners_[part.first + (i + 1 == part.count ? 0 : i + 1)];
-        if ((a.x < along) == (b.x < along)) continue;
-        least = std::min(least, a.y + (b.y - a.y) * ((along - a.x) / (b.x - a.x)));
-      }
+    for (const Rim& rim : rims_) {
+      const glm::dvec2 &a = rim.from, &b = rim.to;
+      least = std::min(least, b.y + kSteepest * std::abs(along - b.x));
+      if ((a.x < along) == (b.x < along)) continue;
+      least = std::min(least, a.y + (b.y - a.y) * ((along - a.x) / (b.x - a.x)));
+    }
     return std::max(least, 0.0);
   }
   /// Places knots where the height can change: at the corners of open parts, where the steepest lines from them reach
@@ -267,17 +280,14 @@ class TrapProfile {
     const auto add = [&](double along) {
       if (along > 0 && along < length) places_.push_back(along);
     };
-    for (const glm::dvec2& corner : corners_) {
-      if (corner.y >= most) continue;
-      add(corner.x);
-      add(corner.x - (most - corner.y) / kSteepest);
-      add(corner.x + (most - corner.y) / kSteepest);
-    }
-    for (const Part& part : parts_)
-      for (std::size_t i = 0; i < part.count; ++i) {
-        const glm::dvec2 &a = corners_[part.first + i], &b = corners_[part.first + (i + 1 == part.count ? 0 : i + 1)];
-        if ((a.y < most) != (b.y < most)) add(a.x + (b.x - a.x) * ((most - a.y) / (b.y - a.y)));
+    for (const auto& [a, b] : rims_) {
+      if (b.y < most) {
+        add(b.x);
+        add(b.x - (most - b.y) / kSteepest);
+        add(b.x + (most - b.y) / kSteepest);
       }
+      if ((a.y < most) != (b.y < most)) add(a.x + (b.x - a.x) * ((most - a.y) / (b.y - a.y)));
+    }
     std::sort(places_.begin(), places_.end());
     const auto is_same = [](double a, double b) { return b - a < OutlineClipper::thin; };
     places_.erase(std::unique(places_.begin(), places_.end() - 1, is_same), places_.end() - 1);
@@ -303,8 +313,7 @@ class TrapProfile {
   }
 
   glm::dvec2 from_{0}, way_{0};
-  std::vector<glm::dvec2> corners_;  ///< (along the side, above it)
-  std::vector<Part> parts_;
+  std::vector<Rim> rims_;
   std::vector<double> places_;
   std::vector<TrapKnot> knots_;
 };
@@ -370,7 +379,7 @@ class TrapMaker {
     // A long side is divided, because few other polygons are beside a part of it.
     const int parts = int(std::clamp(side.length / (kStrip * width_), 1.0, kMostStrips));
     if (side.length < OutlineClipper::thin || nearby_.are_open_beside(number)) return;
-    if (parts == 1 && !nearby_.hide_beside(from, to)) return;
+    if (parts == 1 && !nearby_.hide_beside(number, from, to)) return;
     profile_.begin(from, side.along);
     for (int i = 0; i < parts; ++i) {
       const glm::dvec2 a = from + (to - from) * (double(i) / parts), b = from + (to - from) * (double(i + 1) / parts);
