@@ -26,21 +26,23 @@ struct FlatSides {
 constexpr PrimitiveId most_asked = 1'000'000;
 
 std::array<FlatSides, 3> find_flat_sides(const Surfaces& surfaces) {
-  constexpr double thin = 0.01;  // of the extent along the axis, since bases of scans are uneven
   const Box& bounds = surfaces.bounds();
-  const glm::dvec3 low(bounds.low), size = glm::dvec3(bounds.high) - low;
+  const glm::dvec3 low(bounds.low), high(bounds.high), size = high - low;
+  const glm::dvec3 thin = 0.01 * size;  // since bases of scans are uneven
   const PrimitiveId step = surfaces.primitive_count() / most_asked + 1;
   std::array<FlatSides, 3> sides;
   for (PrimitiveId id = 0; id < surfaces.primitive_count(); id += step) {
     const std::array<glm::vec3, 3> c = surfaces.corners(id);  // formats that leave the up axis open mirror nothing
+    const glm::dvec3 least(glm::min(c[0], glm::min(c[1], c[2]))), most(glm::max(c[0], glm::max(c[1], c[2])));
+    const glm::bvec3 is_low = glm::lessThanEqual(most - low, thin), is_high = glm::lessThanEqual(high - least, thin);
+    if (!glm::any(is_low) && !glm::any(is_high)) continue;  // nearly all triangles of most models
     if (!is_finite(c[0]) || !is_finite(c[1]) || !is_finite(c[2])) continue;
     const glm::dvec3 doubled_area = glm::cross(glm::dvec3(c[1] - c[0]), glm::dvec3(c[2] - c[0]));
     for (int axis = 0; axis < 3; ++axis) {
-      const auto [least, most] = std::minmax({c[0][axis], c[1][axis], c[2][axis]});
       const double area = double(step) * 0.5 * std::abs(doubled_area[axis]);
       FlatSides& found = sides[std::size_t(axis)];
-      if (doubled_area[axis] < 0 && double(most) - low[axis] <= thin * size[axis]) found.low += area;
-      if (doubled_area[axis] > 0 && double(bounds.high[axis]) - double(least) <= thin * size[axis]) found.high += area;
+      if (doubled_area[axis] < 0 && is_low[axis]) found.low += area;
+      if (doubled_area[axis] > 0 && is_high[axis]) found.high += area;
     }
   }
   for (int axis = 0; axis < 3; ++axis) {
