@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "view/answer.h"
@@ -25,6 +26,9 @@ namespace {
 // Half a million triangles are placed at once. A large scene starts with fewer, so that triangles hidden by these need
 // not be placed.
 constexpr std::size_t kBatchesAtOnce = 256, kBatchesAtFirst = 32, kFewBatches = 128;
+
+/// At least the bytes that a Buffer takes beside its contents.
+constexpr std::size_t kBufferHeader = 128;
 
 /// A batch in three parts, by how its triangles are drawn.
 struct DirectBatch {
@@ -159,7 +163,10 @@ class DirectFrame {
   }
 
   void place(std::span<const std::uint64_t> chosen) {
-    if (batches_.size() < chosen.size()) batches_.resize(chosen.size());
+    if (const std::size_t made = batches_.size(); made < chosen.size()) {
+      const Arena side_by_side((chosen.size() - made) * (sizeof(BatchColumns) + kBufferHeader));
+      batches_.resize(chosen.size());
+    }
     parallel_for(execution_, chosen.size(), 1, [&](std::size_t begin, std::size_t end) {
       const auto scratch = scratches_.borrow([] { return std::make_unique<DirectScratch>(); });
       for (std::size_t i = begin; i < end; ++i) {

@@ -130,10 +130,11 @@ class Smoother {
 
   [[nodiscard]] std::vector<Touched> find_touched(std::size_t begin, std::size_t end) const {
     std::vector<Touched> found;
-    for (std::size_t corner = 3 * begin; corner < 3 * end; ++corner) {
-      const std::uint32_t hash = hash_of(bits_of(position(std::uint32_t(corner))));
-      if (touched_.contains(hash & touched_mask_)) found.push_back({std::uint32_t(corner), hash});
-    }
+    for (std::size_t t = begin; t < end; ++t)
+      for (int k = 0; k < 3; ++k) {
+        const std::uint32_t hash = hash_of(bits_of(mesh_.positions[mesh_.triangles[t][k]]));
+        if (touched_.contains(hash & touched_mask_)) found.push_back({std::uint32_t(3 * t) + std::uint32_t(k), hash});
+      }
     return found;
   }
 
