@@ -51,16 +51,18 @@ int wrapped(int i, int size, GLenum mode, bool is_linear) {
   return std::clamp(i, 0, size - 1);
 }
 
-Colors sampled(const State& s, Range u, Range v) {
-  const Image& image = *s.image;
-  const bool is_linear = s.filter == GL_LINEAR;
+Colors sampled_level(const State& s, std::size_t number, bool is_linear, Range u, Range v) {
+  const Level& level = s.image->levels[number];
+  const GLenum format = s.image->format;
   const auto texel = [&](int i, int j, std::size_t k) {
-    const int x = wrapped(i, image.width, s.wrap_s, is_linear), y = wrapped(j, image.height, s.wrap_t, is_linear);
-    if (image.format == GL_INTENSITY || (k < 3 && image.format != GL_RGB && image.format != GL_RGBA)) k = 0;
-    return x < 0 || y < 0 ? double(s.border_color[k]) : image.texels[std::size_t(y * image.width + x)][k] / 255.0;
+    const int x = wrapped(i, level.width, s.wrap_s, is_linear);
+    const int y = s.image->is_1d ? 0 : wrapped(j, level.height, s.wrap_t, is_linear);
+    if (format == GL_INTENSITY || (k < 3 && format != GL_RGB && format != GL_RGBA)) k = 0;
+    return x < 0 || y < 0 ? double(s.border_color[k]) : level.texels[std::size_t(y * level.width + x)][k] / 255.0;
   };
-  u = (s.wrap_s == GL_CLAMP ? unit(u) : u) * double(image.width) - (is_linear ? 0.5 : 0);
-  v = (s.wrap_t == GL_CLAMP ? unit(v) : v) * double(image.height) - (is_linear ? 0.5 : 0);
+  u = (s.wrap_s == GL_CLAMP ? unit(u) : u) * double(level.width) - (is_linear ? 0.5 : 0);
+  v = (s.wrap_t == GL_CLAMP ? unit(v) : v) * double(level.height) - (is_linear ? 0.5 : 0);
+  if (s.image->is_1d) v = 0;
   const double doubt = u.high - u.low + v.high - v.low;
   if (!(doubt < 4)) return {Range(0, 1), Range(0, 1), Range(0, 1), Range(0, 1)};
   // One or some texels, or the mean of four in the middle of the ranges, which fixed-point numbers make.
@@ -78,8 +80,74 @@ Colors sampled(const State& s, Range u, Range v) {
   return c;
 }
 
+/// `change` is the square of the change from pixel to pixel, in texels of the first level.
+Colors sampled(const State& s, Range u, Range v, Range change) {
+  Colors c{nothing(), nothing(), nothing(), nothing()};
+  const auto add = [&](const Colors& by) {
+    for (std::size_t k = 0; k < kColors; ++k) c[k] = hull(c[k], by[k]);
+  };
+  const GLenum min = s.min_filter;
+  const bool has_levels = min != GL_NEAREST && min != GL_LINEAR, is_linear_mag = s.mag_filter == GL_LINEAR;
+  const bool is_linear_min = min == GL_LINEAR || min == GL_LINEAR_MIPMAP_NEAREST || min == GL_LINEAR_MIPMAP_LINEAR;
+  const bool is_nearest_level = min == GL_NEAREST_MIPMAP_NEAREST || min == GL_LINEAR_MIPMAP_NEAREST;
+  const auto log = [](double square) { return std::log2(std::max(square, 1e-30)) / 2; };
+  const Range lod = wider({log(change.low), log(change.high)}, 1e-4);
+  const double limit = has_levels && is_linear_mag && !is_linear_min ? 0.5 : 0;
+  if (lod.low <= limit) add(sampled_level(s, 0, is_linear_mag, u, v));
+  if (lod.high <= limit) return c;
+  const double last = has_levels ? double(s.image->levels.size() - 1) : 0;
+  const Range level = limited(greatest(lod, lod.low <= limit ? Range(limit) : lod), {0, last});
+  const auto at = [&](double number) { return sampled_level(s, std::size_t(number), is_linear_min, u, v); };
+  if (is_nearest_level) {
+    for (double n = std::max(std::ceil(level.low + 0.5) - 1, 0.0); n <= std::min(std::ceil(level.high + 0.5) - 1, last);
+         ++n)
+      add(at(n));
+    return c;
+  }
+  for (double n = std::floor(level.low); n <= level.high; ++n) {
+    const Colors low = at(n), high = at(std::min(n + 1, last));
+    const Range by = unit(level - n);
+    for (std::size_t k = 0; k < kColors; ++k) c[k] = hull(c[k], unit(wider(mixed(low[k], high[k], by), 1e-3)));
+  }
+  return c;
+}
+
+/// Table 3.24 of the same.
+void apply_combiner(const State& s, Colors& c, Colors t) {
+  // Components that the texture lacks.
+  if (s.image->format == GL_RGB || s.image->format == GL_LUMINANCE) t[3] = 1;
+  if (s.image->format == GL_ALPHA) t[0] = t[1] = t[2] = 0;
+  const Colors primary = c, constant{s.env_color[0], s.env_color[1], s.env_color[2], s.env_color[3]};
+  const auto argument = [&](std::size_t part, std::size_t i, std::size_t k) {
+    const GLenum source = s.combiner.sources[part][i], operand = s.combiner.operands[part][i];
+    const Colors& from = source == GL_TEXTURE ? t : source == GL_CONSTANT ? constant : primary;
+    const Range value = from[operand == GL_SRC_COLOR || operand == GL_ONE_MINUS_SRC_COLOR ? k : 3];
+    return operand == GL_SRC_COLOR || operand == GL_SRC_ALPHA ? value : Range(1) - value;
+  };
+  const GLenum rgb = s.combiner.mode[0];
+  for (std::size_t k = 0; k < kColors; ++k) {
+    const bool is_dot = rgb == GL_DOT3_RGBA || (rgb == GL_DOT3_RGB && k < 3);
+    const std::size_t part = k == 3 && !is_dot ? 1 : 0;
+    const auto arg = [&](std::size_t i) { return argument(part, i, k); };
+    Range value = arg(0);
+    switch (s.combiner.mode[part]) {
+      case GL_REPLACE: break;
+      case GL_MODULATE: value = value * arg(1); break;
+      case GL_ADD: value = value + arg(1); break;
+      case GL_ADD_SIGNED: value = value + arg(1) - 0.5; break;
+      case GL_SUBTRACT: value = value - arg(1); break;
+      case GL_INTERPOLATE: value = value * arg(2) + arg(1) * (Range(1) - arg(2)); break;
+      default:
+        value = 0;
+        for (std::size_t j = 0; j < 3; ++j) value = value + (argument(0, 0, j) - 0.5) * (argument(0, 1, j) - 0.5) * 4.0;
+    }
+    c[k] = unit(wider(value, kTiny) * double(s.combiner.scales[part]));
+  }
+}
+
 /// Tables 3.22 and 3.23 of the specification of OpenGL 1.5.
 void apply_texture(const State& s, Colors& c, const Colors& t) {
+  if (s.env_mode == GL_COMBINE) return apply_combiner(s, c, t);
   const GLenum format = s.image->format;
   const bool has_color = format != GL_ALPHA, has_alpha = format != GL_LUMINANCE && format != GL_RGB;
   const bool is_rgb = format == GL_RGB || format == GL_RGBA;  // GL_DECAL is undefined for others, and does nothing
@@ -176,6 +244,7 @@ struct Fragment {
   std::array<Range, kValues> values;
   Range depth;
   std::size_t source;
+  Range change = 0;  ///< of texture coordinates from pixel to pixel: the square of the greater length, in texels
 };
 
 using Linear = glm::dvec3;  ///< a linear function over the window
@@ -207,6 +276,7 @@ struct Primitive {
   double band = 0;                       ///< pixels by which rounding may move vertices that a plane makes
   double slope = 0;                      ///< greatest change of a weight from pixel to pixel, out of 1
   double offset = 0;                     ///< steps of depth
+  Range change_of_texture = 0;           ///< as in Fragment
   std::size_t source = 0;
 
   explicit Primitive(const std::array<Corner, n>& corners)
@@ -244,12 +314,28 @@ struct Primitive {
     if (!is_whole && most_inverse > 0) least_w = std::max(least_w, 1 / most_inverse);
     if (!is_whole) band = (1.5 + farthest / least_w * 0x1p-22) / 256;
     const double steepest = has_one_depth ? 0 : std::max(std::abs(linear[kZ].x), std::abs(linear[kZ].y)) * 256;
+    if (s.texture && n == 3) change_of_texture = changes(*s.image);
     const auto [factor, units] = s.polygon_offset;
     if (s.offset && n == 3) offset = steepest * kMostDepth * double(factor) + double(units);
     // A depth depends on nothing but the vertices, for triangles in any order, and on what cuts them.
     if (is_whole && n == 3) std::sort(key.begin(), key.end());
     key.push_back({offset});
     source = to.sources.try_emplace(key, to.sources.size() + 1).first->second;
+  }
+
+  /// Known only where texture coordinates are linear in the window.
+  [[nodiscard]] Range changes(const Image& image) const {
+    const auto is_one = [&](std::size_t k) { return limits[k].low == limits[k].high; };
+    if (!is_whole || !is_one(kW) || !is_one(kQ)) return {0, 1e30};
+    const double scale = 256 * limits[kW].low / limits[kQ].low;
+    double across = 0, up = 0, error = 0;
+    for (const std::size_t k : {std::size_t(kS), std::size_t(kT)}) {
+      const double size = k == kS ? image.levels[0].width : image.is_1d ? 0 : image.levels[0].height;
+      across += std::pow(linear[k].x * scale * size, 2), up += std::pow(linear[k].y * scale * size, 2);
+      error += 1e-6 * (1 + slope) * std::max(std::abs(limits[k].low), std::abs(limits[k].high)) * size;
+    }
+    const double length = std::sqrt(std::max(across, up));
+    return {std::pow(std::max(length * (1 - 1e-5) - error, 0.0), 2), std::pow(length * (1 + 1e-5) + error, 2)};
   }
 
   [[nodiscard]] Fragment at_place(double x, double y) const {
@@ -283,6 +369,7 @@ struct Primitive {
     }
     const Range z = unit(around([&](double px, double py) { return at(linear[kZ], px, py); }));
     const double depth_error = is_whole ? 3 : 12 + most / least_w * 4 + std::abs(offset) * 0.1;
+    f.change = change_of_texture;
     f.depth = has_one_depth ? depth_of(c[0].z, offset) : stored(z * kMostDepth + offset, depth_error, kMostDepth);
     return f;
   }
@@ -345,12 +432,39 @@ struct Drawing {
     return c;
   }
 
-  void draw_triangle(const std::array<Corner, 3>& c) const {
+  /// Draws a part of a polygon. Its `edges` to the next corner are those of the polygon, in the order of drawing. The
+  /// stipple begins anew unless the part before was outlined. \returns whether this one is.
+  bool draw_triangle(const std::array<Corner, 3>& c, std::initializer_list<std::size_t> edges, bool goes_on) {
     Primitive<3> p(c);
     p.area = glm::dot(p.places[0], glm::cross(p.places[1], p.places[2]));
-    const bool is_front = (p.area > 0) == (s.front == GL_CCW);
+    const bool is_front = (p.area >= 0) == (s.front == GL_CCW), are_filled = s.polygon_modes == State().polygon_modes;
     const bool is_culled = s.cull_face && (s.culled == GL_FRONT_AND_BACK || (s.culled == GL_FRONT) == is_front);
-    if (p.area == 0 || is_culled) return;
+    if (is_culled || (p.area == 0 && (are_filled || s.cull_face))) return false;
+    const GLenum mode = s.polygon_modes[is_front ? 0 : 1];
+    if (mode != GL_FILL && !p.is_whole) {  // planes make edges
+      Pixel any{{}, {0, kMostDepth}, 0, -1};
+      any.color.fill({0, 255});
+      each_pixel(std::array<Corner, 0>(), 0, false, [&](int, int, Pixel& pixel) { pixel = any; });
+      return false;
+    }
+    if (mode == GL_FILL) {
+      if (p.area != 0) fill_triangle(p, c);
+      return false;
+    }
+    if (!goes_on) stipple_count = 0;
+    for (const std::size_t k : edges) {
+      std::array<Corner, 2> ends{c[k], c[(k + 1) % 3]};
+      for (Corner& end : ends)
+        if (s.shade_model == GL_FLAT) std::copy_n(c[2].v.begin() + kColor, kColors, end.v.begin() + kColor);
+      if (mode == GL_LINE)
+        draw_line(ends);
+      else
+        draw_point(ends[0]);
+    }
+    return true;
+  }
+
+  void fill_triangle(Primitive<3>& p, const std::array<Corner, 3>& c) const {
     for (std::size_t k = 0; k < 3; ++k) {
       const Linear side = glm::cross(p.places[(k + 1) % 3], p.places[(k + 2) % 3]) * (p.area < 0 ? -1.0 : 1.0);
       p.sides.push_back({side, side.x > 0 || (side.x == 0 && side.y > 0)});  // left and bottom sides are inside
@@ -414,7 +528,7 @@ struct Drawing {
     const auto over_q = [&](Range r) {
       return q.low == 1 && q.high == 1 ? r : wider(r * inverse, 1e-6 * (1 + std::abs(r.low)));
     };
-    if (s.texture) apply_texture(s, c, sampled(s, over_q(v[kS]), over_q(v[kT])));
+    if (s.texture) apply_texture(s, c, sampled(s, over_q(v[kS]), over_q(v[kT]), f.change));
     if (s.fog) apply_fog(s, c, v[kFog]);
     Answer seen = f.covered, right = Answer::yes, in_front = Answer::yes;
     if (s.alpha_test) seen = std::min(seen, compared(s.alpha_func, byte(c[3]), byte(double(s.alpha_ref))));
@@ -450,21 +564,33 @@ void Interpreter::draw(const State& s, GLenum mode, const std::vector<Vertex>& v
   std::vector<Corner> v;
   Drawing drawing{*this, s};
   for (const Vertex& vertex : vertices) v.push_back(drawing.transformed(vertex));
-  const auto triangle = [&](std::size_t a, std::size_t b, std::size_t c) { drawing.draw_triangle({v[a], v[b], v[c]}); };
+  bool goes_on = false;
+  const auto triangle = [&](std::size_t a, std::size_t b, std::size_t c, std::initializer_list<std::size_t> edges) {
+    goes_on = drawing.draw_triangle({v[a], v[b], v[c]}, edges, goes_on);
+  };
   const auto line = [&](std::size_t a, std::size_t b) { drawing.draw_line({v[a], v[b]}); };
   constexpr std::size_t kSteps[] = {1, 2, 1, 1, 3, 1, 1, 4, 2, 1}, kSizes[] = {1, 2, 2, 2, 3, 3, 3, 4, 4, 3};
-  for (std::size_t i = 0; i + kSizes[mode] <= v.size(); i += kSteps[mode]) switch (mode) {
+  for (std::size_t i = 0; i + kSizes[mode] <= v.size(); i += kSteps[mode]) {
+    goes_on = goes_on && mode == GL_POLYGON;
+    switch (mode) {
       case GL_POINTS: drawing.draw_point(v[i]); break;
       case GL_LINES: drawing.stipple_count = 0, line(i, i + 1); break;
       case GL_LINE_LOOP:
       case GL_LINE_STRIP: line(i, i + 1); break;
-      case GL_TRIANGLES: triangle(i, i + 1, i + 2); break;
-      case GL_TRIANGLE_STRIP: triangle(i + i % 2, i + 1 - i % 2, i + 2); break;
-      case GL_TRIANGLE_FAN: triangle(0, i + 1, i + 2); break;
-      case GL_QUADS: triangle(i, i + 1, i + 3), triangle(i + 1, i + 2, i + 3); break;
-      case GL_QUAD_STRIP: triangle(i, i + 1, i + 3), triangle(i + 2, i, i + 3); break;
-      default: triangle(i + 1, i + 2, 0); break;  // GL_POLYGON
+      case GL_TRIANGLES: triangle(i, i + 1, i + 2, {0, 1, 2}); break;
+      case GL_TRIANGLE_STRIP: triangle(i + i % 2, i + 1 - i % 2, i + 2, {0, 1, 2}); break;
+      case GL_TRIANGLE_FAN: triangle(0, i + 1, i + 2, {0, 1, 2}); break;
+      case GL_QUADS: triangle(i, i + 1, i + 3, {2, 0}), triangle(i + 1, i + 2, i + 3, {0, 1}); break;
+      case GL_QUAD_STRIP: triangle(i, i + 1, i + 3, {0, 1}), triangle(i + 2, i, i + 3, {2, 0}); break;
+      default: {  // GL_POLYGON
+        const bool is_first = i == 0, is_last = i + 3 == v.size();
+        if (is_first)
+          is_last ? triangle(1, 2, 0, {2, 0, 1}) : triangle(1, 2, 0, {2, 0});
+        else
+          is_last ? triangle(i + 1, i + 2, 0, {0, 1}) : triangle(i + 1, i + 2, 0, {0});
+      }
     }
+  }
   if (mode == GL_LINE_LOOP && v.size() >= 2) line(v.size() - 1, 0);
 }
 

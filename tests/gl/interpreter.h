@@ -35,10 +35,25 @@ struct Vertex {
   std::array<float, 4> position, color, texcoord;
 };
 
-struct Image {
+struct Level {
   int width, height;
-  GLenum format;              ///< base format, such as GL_LUMINANCE
   std::vector<Texel> texels;  ///< as given to glTexImage2D, rows from the bottom
+};
+
+struct Image {
+  GLenum format;  ///< base format, such as GL_LUMINANCE
+  bool is_1d;
+  std::vector<Level> levels;  ///< down to one texel
+};
+
+/// GL_COMBINE of one texture unit: of colors, then of alpha.
+struct Combiner {
+  std::array<GLenum, 2> mode{GL_MODULATE, GL_MODULATE};
+  std::array<std::array<GLenum, 3>, 2> sources{
+      {{GL_TEXTURE, GL_PREVIOUS, GL_CONSTANT}, {GL_TEXTURE, GL_PREVIOUS, GL_CONSTANT}}};
+  std::array<std::array<GLenum, 3>, 2> operands{
+      {{GL_SRC_COLOR, GL_SRC_COLOR, GL_SRC_ALPHA}, {GL_SRC_ALPHA, GL_SRC_ALPHA, GL_SRC_ALPHA}}};
+  std::array<float, 2> scales{1, 1};
 };
 
 /// The state that decides what a call draws. The product of the matrices must be exact in doubles.
@@ -51,6 +66,7 @@ struct State {
        stencil_test = false, fog = false, texture = false, offset = false, stipple = false, clip_plane0 = false,
        clip_plane1 = false, depth_mask = true;
   GLenum culled = GL_BACK, front = GL_CCW, shade_model = GL_SMOOTH;
+  std::array<GLenum, 2> polygon_modes{GL_FILL, GL_FILL};  ///< of front and back
   GLenum alpha_func = GL_ALWAYS, depth_func = GL_LESS, stencil_func = GL_ALWAYS, logic_op = GL_COPY;
   float alpha_ref = 0, fog_start = 0, fog_end = 1, line_width = 1, point_size = 1;
   int stencil_ref = 0, clear_stencil = 0, stipple_factor = 1;
@@ -64,7 +80,9 @@ struct State {
   std::array<float, 2> polygon_offset{};  ///< factor, units
   GLushort stipple_pattern = 0xFFFF;
   std::shared_ptr<const Image> image;
-  GLenum filter = GL_NEAREST, wrap_s = GL_REPEAT, wrap_t = GL_REPEAT, env_mode = GL_MODULATE;
+  GLenum min_filter = GL_NEAREST, mag_filter = GL_NEAREST, wrap_s = GL_REPEAT, wrap_t = GL_REPEAT;
+  GLenum env_mode = GL_MODULATE;
+  Combiner combiner;
 };
 
 struct Pixel {

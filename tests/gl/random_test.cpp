@@ -53,6 +53,9 @@ struct Part {
 };
 
 void enable(GLenum name, bool on) { (on ? glEnable : glDisable)(name); }
+void enable_texture(const State& s) {
+  enable(GL_TEXTURE_1D, s.texture && s.image->is_1d), enable(GL_TEXTURE_2D, s.texture && !s.image->is_1d);
+}
 GLenum name_of(Random& r, std::initializer_list<GLenum> names) { return one_of(r, names); }
 GLenum comparison(Random& r) { return GLenum(GL_NEVER + r.below(8)); }
 
@@ -81,6 +84,8 @@ const Part kParts[] = {
      SET enable(GL_CULL_FACE, s.cull_face), glFrontFace(s.front), glCullFace(s.culled), glShadeModel(s.shade_model); }},
     {VARY s.offset = chance(r, 60), s.polygon_offset = {float(r.below(41) - 20) / 8, float(r.below(41) - 20) / 2};
      SET enable(GL_POLYGON_OFFSET_FILL, s.offset), std::apply(glPolygonOffset, s.polygon_offset); }},
+    {VARY for (GLenum& mode : s.polygon_modes) mode = chance(r, 70) ? GL_FILL : name_of(r, {GL_LINE, GL_POINT});
+     SET glPolygonMode(GL_FRONT, s.polygon_modes[0]), glPolygonMode(GL_BACK, s.polygon_modes[1]); }},
     {VARY s.line_width = one_of(r, {1.0f, 2.0f, 3.0f, 7.0f}), s.point_size = one_of(r, {1.0f, 2.0f, 3.0f, 6.0f, 20.0f});
        s.stipple = chance(r, 70), s.stipple_factor = 1 + r.below(4), s.stipple_pattern = GLushort(r.next());
      SET glLineWidth(s.line_width), glPointSize(s.point_size), enable(GL_LINE_STIPPLE, s.stipple);
@@ -108,24 +113,53 @@ const Part kParts[] = {
        for (bool& on : s.color_mask) on = chance(r, 75);
      SET enable(GL_COLOR_LOGIC_OP, s.logic), glLogicOp(s.logic_op), std::apply(glColorMask, s.color_mask); }},
     {VARY const GLenum format = name_of(r, {GL_ALPHA, GL_LUMINANCE, GL_LUMINANCE_ALPHA, GL_INTENSITY, GL_RGB, GL_RGBA});
-       gl::Image image{1 << r.below(4), 1 << r.below(4), format, {}};
-       image.texels.resize(std::size_t(image.width * image.height));
-       for (gl::Texel& texel : image.texels) for (std::uint8_t& c : texel) c = std::uint8_t(r.below(256));
+       gl::Image image{format, chance(r, 30), {}};
+       for (int w = 1 << r.below(4), h = image.is_1d ? 1 : 1 << r.below(4);; w = std::max(w / 2, 1), h = std::max(h / 2, 1)) {
+         gl::Level level{w, h, std::vector<gl::Texel>(std::size_t(w * h))};
+         for (gl::Texel& texel : level.texels) for (std::uint8_t& c : texel) c = std::uint8_t(r.below(256));
+         image.levels.push_back(std::move(level));
+         if (w * h == 1) break;
+       }
        s.image = std::make_shared<const gl::Image>(std::move(image));
-     SET const gl::Image* const i = s.image.get();
-       if (i) glTexImage2D(GL_TEXTURE_2D, 0, GLint(i->format), i->width, i->height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-                          i->texels.data()); }},
-    {VARY s.texture = s.image && chance(r, 70), s.filter = name_of(r, {GL_NEAREST, GL_LINEAR});
+     SET enable_texture(s);
+       for (std::size_t i = 0; s.image && i < s.image->levels.size(); ++i) {
+         const gl::Level& l = s.image->levels[i];
+         const auto format = GLint(s.image->format);
+         if (s.image->is_1d) glTexImage1D(GL_TEXTURE_1D, GLint(i), format, l.width, 0, GL_RGBA, GL_UNSIGNED_BYTE, l.texels.data());
+         else glTexImage2D(GL_TEXTURE_2D, GLint(i), format, l.width, l.height, 0, GL_RGBA, GL_UNSIGNED_BYTE, l.texels.data());
+       } }},
+    {VARY s.texture = s.image && chance(r, 70), s.mag_filter = s.min_filter = name_of(r, {GL_NEAREST, GL_LINEAR});
+       if (chance(r, 40)) s.min_filter = name_of(r, {GL_NEAREST, GL_LINEAR, GL_NEAREST_MIPMAP_NEAREST, GL_LINEAR_MIPMAP_NEAREST,
+                                                     GL_NEAREST_MIPMAP_LINEAR, GL_LINEAR_MIPMAP_LINEAR});
        for (GLenum* wrap : {&s.wrap_s, &s.wrap_t})
          *wrap = name_of(r, {GL_REPEAT, GL_CLAMP, GL_CLAMP_TO_EDGE, GL_CLAMP_TO_BORDER, GL_MIRRORED_REPEAT});
-       s.env_mode = name_of(r, {GL_MODULATE, GL_REPLACE, GL_DECAL, GL_BLEND, GL_ADD});
+       s.env_mode = name_of(r, {GL_MODULATE, GL_REPLACE, GL_DECAL, GL_BLEND, GL_ADD, GL_COMBINE});
        s.env_color = random_color(r), s.border_color = random_color(r);
-     SET enable(GL_TEXTURE_2D, s.texture), glTexEnvfv(GL_TEXTURE_ENV, GL_TEXTURE_ENV_COLOR, s.env_color.data());
-       glTexParameterfv(GL_TEXTURE_2D, GL_TEXTURE_BORDER_COLOR, s.border_color.data());
-       const std::pair<GLenum, GLenum> values[] = {{GL_TEXTURE_MIN_FILTER, s.filter}, {GL_TEXTURE_MAG_FILTER, s.filter},
-                                                   {GL_TEXTURE_WRAP_S, s.wrap_s}, {GL_TEXTURE_WRAP_T, s.wrap_t}};
-       for (const auto& [name, value] : values) glTexParameteri(GL_TEXTURE_2D, name, GLint(value));
-       glTexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GLint(s.env_mode)); }},
+       s.combiner.mode = {name_of(r, {GL_REPLACE, GL_MODULATE, GL_ADD, GL_ADD_SIGNED, GL_SUBTRACT, GL_INTERPOLATE, GL_DOT3_RGB,
+                                      GL_DOT3_RGBA}),
+                          name_of(r, {GL_REPLACE, GL_MODULATE, GL_ADD, GL_ADD_SIGNED, GL_SUBTRACT, GL_INTERPOLATE})};
+       for (std::size_t part = 0; part < 2; ++part) for (std::size_t i = 0; i < 3; ++i) {
+         s.combiner.sources[part][i] = name_of(r, {GL_TEXTURE, GL_CONSTANT, GL_PRIMARY_COLOR, GL_PREVIOUS});
+         s.combiner.operands[part][i] = GLenum(GL_SRC_COLOR + (part == 0 ? r.below(4) : 2 + r.below(2)));
+       }
+       for (float& scale : s.combiner.scales) scale = one_of(r, {1.0f, 1.0f, 2.0f, 4.0f});
+     SET enable_texture(s);
+       glTexEnvfv(GL_TEXTURE_ENV, GL_TEXTURE_ENV_COLOR, s.env_color.data());
+       for (const GLenum target : {GL_TEXTURE_1D, GL_TEXTURE_2D}) {
+         glTexParameterfv(target, GL_TEXTURE_BORDER_COLOR, s.border_color.data());
+         const std::pair<GLenum, GLenum> values[] = {{GL_TEXTURE_MIN_FILTER, s.min_filter}, {GL_TEXTURE_MAG_FILTER, s.mag_filter},
+                                                     {GL_TEXTURE_WRAP_S, s.wrap_s}, {GL_TEXTURE_WRAP_T, s.wrap_t}};
+         for (const auto& [name, value] : values) glTexParameteri(target, name, GLint(value));
+       }
+       glTexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GLint(s.env_mode));
+       const auto env = [](GLenum name, GLenum value) { glTexEnvi(GL_TEXTURE_ENV, name, GLint(value)); };
+       env(GL_COMBINE_RGB, s.combiner.mode[0]), env(GL_COMBINE_ALPHA, s.combiner.mode[1]);
+       for (GLenum i = 0; i < 3; ++i) {
+         env(GL_SOURCE0_RGB + i, s.combiner.sources[0][i]), env(GL_SOURCE0_ALPHA + i, s.combiner.sources[1][i]);
+         env(GL_OPERAND0_RGB + i, s.combiner.operands[0][i]), env(GL_OPERAND0_ALPHA + i, s.combiner.operands[1][i]);
+       }
+       glTexEnvf(GL_TEXTURE_ENV, GL_RGB_SCALE, s.combiner.scales[0]);
+       glTexEnvf(GL_TEXTURE_ENV, GL_ALPHA_SCALE, s.combiner.scales[1]); }},
     {VARY s.fog = chance(r, 50), s.fog_start = r.within(-1, 1), s.fog_color = random_color(r);
        s.fog_end = s.fog_start + one_of(r, {-1.0f, 0.5f, 3.0f});
      SET enable(GL_FOG, s.fog), glFogi(GL_FOG_MODE, GL_LINEAR), glFogf(GL_FOG_START, s.fog_start);
@@ -134,8 +168,9 @@ const Part kParts[] = {
 
 /// Vertices of a primitive: tiny, thin, large, huge, cut by planes, or where ties are. Many creep over the frame.
 std::vector<Vertex> random_vertices(Random& r, const State& s, const CallStream& to, int count) {
-  enum Kind { tiny, thin, large, huge, cut, ties, kinds };
-  const int kind = count > 100 ? int(tiny) : r.below(kinds);
+  enum Kind { tiny, thin, large, ties, huge, cut, kinds };
+  const bool are_filled = s.polygon_modes == State().polygon_modes;  // the edges of others are not cut
+  const int kind = count > 100 ? int(tiny) : r.below(are_filled ? kinds : int(huge));
   const bool has_one_w = chance(r, 60), has_one_z = has_one_w && chance(r, 80), has_ids = chance(r, 50);
   const bool are_flush = chance(r, 20);  // texture coordinates, with texels
   const float reach = kind == tiny ? 1.5f : kind == huge ? one_of(r, {300.0f, 1500.0f, 40000.0f}) : 50.0f;
@@ -173,6 +208,9 @@ CallStream random_stream(std::uint64_t seed) {
       const auto part = std::size_t(r.below(int(std::size(kParts))));
       kParts[part].vary(r, s, to), varied |= 1u << part;
     }
+    // Edges that planes make are not compared.
+    if (s.polygon_modes != State().polygon_modes)
+      s.clip_plane0 = s.clip_plane1 = false, s.projection = s.modelview = gl::kIdentity, varied = ~0u;
     if (s.logic) s.shade_model = GL_FLAT, s.texture = s.fog = false, varied = ~0u;  // exact colors, for their bits
     const std::size_t number = r.next() % (to.commands.size() + 1);
     const Command* const other = number > 0 ? &to.commands[number - 1] : nullptr;
@@ -184,6 +222,7 @@ CallStream random_stream(std::uint64_t seed) {
       c.mode = other->mode, c.vertices = other->vertices;
       s.projection = o.projection, s.modelview = o.modelview, s.viewport = o.viewport, s.depth_range = o.depth_range;
       s.offset = o.offset, s.polygon_offset = o.polygon_offset, s.depth_test = true;
+      s.polygon_modes = o.polygon_modes, s.clip_plane0 = o.clip_plane0, s.clip_plane1 = o.clip_plane1;
       s.depth_func = one_of<GLenum>(r, {GL_EQUAL, GL_EQUAL, GL_LEQUAL, GL_GEQUAL, GL_NOTEQUAL});
       c.state = s, c.varied = ~0u;
       const gl::Color color = random_color(r);

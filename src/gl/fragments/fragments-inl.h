@@ -38,8 +38,11 @@ HWY_INLINE MI Compared(const TestFunction& pass, VI a, VI b) {
   return result;
 }
 
-/// A source of fragments has their pixels and their values: Load(plane), Store(plane, words, lanes), Id(),
-/// ColorOfVertex(k), Varying(k), Changes(k, dx, dy) and Covered(alpha), which takes off what smooth edges leave out.
+/// A source of fragments has a block of vectors of them: live[v] says which fragments of vector v are there, and
+/// depth[v] has their stored depths. It reads and writes planes of the frame at them (Load, Store), and knows the
+/// primitive (Id) and what smooth edges leave of alpha (Covered). Pixels() has colors, if they are not those of
+/// vertices. ColorOfVertex(k) and Varying(k) give functions of v, and Changes(v, k, dx, dy) the changes from pixel to
+/// pixel; Weigh(count, needs_change) is called before. Move(to, from) puts a vector in another one's place.
 class FragmentStage {
  public:
   FragmentStage(const PaintTarget& target, const DrawState& draw) : target_(target), d_(draw), s_(draw.state) {
@@ -55,44 +58,53 @@ class FragmentStage {
                c.target_rgb == GL_ONE_MINUS_SRC_ALPHA && c.target_alpha == GL_ONE_MINUS_SRC_ALPHA;
   }
 
-  [[nodiscard]] bool needs_change() const { return needs_change_; }
-
-  /// `depth` is the stored depth of each fragment.
+  /// Processes `count` vectors, which the source need not keep.
   template <class Source>
-  HWY_INLINE void Process(const Source& source, MI live, VI depth) {
+  HWY_INLINE void Process(Source& source, std::size_t count) {
     const DI d;
-    VU planes{};
     const bool has_planes = d_.tests_depth || d_.tests_stencil;
-    if (target_.probe) Record(source, live, depth);
-    if (has_planes) planes = source.Load(target_.frame.depth.data());
-    if (!d_.tests_alpha) {
-      if (has_planes) live = Tested(source, live, depth, planes);
-      if (hn::AllFalse(d, live)) return;
-      if (d_.color_mask == 0 && !target_.passed) return;
-      Finish(source, live, ColorOfFragments(source));
-      return;
+    FragmentColor color[kBlock];
+    if (target_.probe) Record(source);
+    if (d_.tests_alpha) {
+      source.Weigh(count, needs_change_);
+      ColorFragments(source, count, color);
+      for (std::size_t v = 0; v < count; ++v) source.live[v] = hn::And(source.live[v], PassesAlpha(color[v].c[3]));
+      if (has_planes) Test(source, count);
+    } else {
+      if (has_planes) {
+        Test(source, count);
+        std::size_t kept = 0;
+        for (std::size_t v = 0; v < count; ++v) {
+          if (hn::AllFalse(d, source.live[v])) continue;
+          if (kept != v) source.Move(kept, v);
+          ++kept;
+        }
+        count = kept;
+      }
+      if (count == 0 || (d_.color_mask == 0 && !target_.passed)) return;
+      source.Weigh(count, needs_change_);
+      ColorFragments(source, count, color);
     }
-    const FragmentColor color = ColorOfFragments(source);
-    live = hn::And(live, PassesAlpha(color.c[3]));
-    if (has_planes) live = Tested(source, live, depth, planes);
-    if (hn::AllFalse(d, live)) return;
-    Finish(source, live, color);
+    Finish(source, count, color);
   }
 
  private:
-  /// Records the fragments, all of which are at the probe's pixel, before they change the frame.
+  /// Records the fragments of the first vector, all of which are at the probe's pixel, before they change the frame.
   template <class Source>
-  HWY_NOINLINE void Record(const Source& source, MI live, VI depth) const {
+  HWY_NOINLINE void Record(Source& source) const {
     using Verdict = FragmentEvent::Verdict;
     const DI d;
     HWY_ALIGN_MAX std::uint32_t ids[kMaxLanes];
     HWY_ALIGN_MAX std::int32_t depths[kMaxLanes];
     HWY_ALIGN_MAX float alphas[kMaxLanes];
-    const VF alpha = ColorOfFragments(source).c[3];
-    const std::uint64_t alpha_passes = BitsOf(d, d_.tests_alpha ? PassesAlpha(alpha) : live);
-    hn::Store(source.Id(), DU(), ids);
-    hn::Store(depth, d, depths);
-    hn::Store(alpha, DF(), alphas);
+    FragmentColor color[kBlock];
+    source.Weigh(1, needs_change_);
+    ColorFragments(source, 1, color);
+    const MI live = source.live[0];
+    const std::uint64_t alpha_passes = BitsOf(d, d_.tests_alpha ? PassesAlpha(color[0].c[3]) : live);
+    hn::Store(source.Id(0), DU(), ids);
+    hn::Store(source.depth[0], d, depths);
+    hn::Store(color[0].c[3], DF(), alphas);
     const std::uint32_t word = target_.frame.depth[target_.frame.at(target_.probe->x, target_.probe->y)];
     const auto passes = [](GLenum func, std::uint32_t a, std::uint32_t b) {
       const TestFunction pass(func);
@@ -120,31 +132,35 @@ class FragmentStage {
 
   /// Makes the stencil and depth tests, and stores what they change.
   template <class Source>
-  [[nodiscard]] HWY_INLINE MI Tested(const Source& source, MI live, VI depth, VU planes) {
+  HWY_INLINE void Test(Source& source, std::size_t count) const {
     const DI d;
-    const VI kept = hn::BitCast(d, hn::ShiftRight<8>(planes));
-    MI pass = live;
-    if (d_.tests_depth) pass = hn::And(live, Compared(TestFunction(s_.depth.func), depth, kept));
-    if (!d_.tests_stencil) {
-      if (!d_.writes_depth || hn::AllFalse(d, pass)) return pass;
-      const VI word = hn::Or(hn::ShiftLeft<8>(depth), hn::And(hn::BitCast(d, planes), hn::Set(d, 255)));
-      source.Store(target_.frame.depth.data(), hn::BitCast(DU(), word), pass);
-      return pass;
+    std::uint32_t* const plane = target_.frame.depth.data();
+    const TestFunction depth_function(s_.depth.func), stencil_function(s_.stencil.func);
+    const bool tests_depth = d_.tests_depth, tests_stencil = d_.tests_stencil, writes_depth = d_.writes_depth;
+    const VI low = hn::Set(d, 255);
+    for (std::size_t v = 0; v < count; ++v) {
+      const VI planes = hn::BitCast(d, source.Load(v, plane)), stencil = hn::And(planes, low);
+      const VI depth = source.depth[v], kept = hn::BitCast(d, hn::ShiftRight<8>(hn::BitCast(DU(), planes)));
+      MI live = source.live[v], pass = live;
+      VI next = stencil;
+      if (tests_depth) pass = hn::And(live, Compared(depth_function, depth, kept));
+      if (tests_stencil) {
+        const VI mask = hn::Set(d, std::int32_t(stencil_mask_)), ref = hn::Set(d, std::clamp(s_.stencil.ref, 0, 255));
+        const MI right = hn::And(live, Compared(stencil_function, hn::And(ref, mask), hn::And(stencil, mask)));
+        pass = hn::And(pass, right);
+        next = hn::IfThenElse(right, Operated(s_.stencil.depth_fail, stencil, ref),
+                              Operated(s_.stencil.fail, stencil, ref));
+        next = hn::IfThenElse(pass, Operated(s_.stencil.pass, stencil, ref), next);
+        const VI writes = hn::Set(d, std::int32_t(s_.stencil.write_mask & 255));
+        next = hn::Or(hn::AndNot(writes, stencil), hn::And(writes, next));
+      } else {
+        live = pass;
+      }
+      source.live[v] = pass;
+      if ((!writes_depth && !tests_stencil) || hn::AllFalse(d, live)) continue;
+      const VI to = writes_depth ? hn::IfThenElse(pass, depth, kept) : kept;
+      source.Store(v, plane, hn::BitCast(DU(), hn::Or(hn::ShiftLeft<8>(to), next)), live);
     }
-    const VI stencil = hn::And(hn::BitCast(d, planes), hn::Set(d, 255));
-    const VI mask = hn::Set(d, std::int32_t(stencil_mask_));
-    const VI ref = hn::Set(d, std::clamp(s_.stencil.ref, 0, 255));
-    const MI right = hn::And(live, Compared(TestFunction(s_.stencil.func), hn::And(ref, mask), hn::And(stencil, mask)));
-    pass = hn::And(pass, right);
-    VI next =
-        hn::IfThenElse(right, Operated(s_.stencil.depth_fail, stencil, ref), Operated(s_.stencil.fail, stencil, ref));
-    next = hn::IfThenElse(pass, Operated(s_.stencil.pass, stencil, ref), next);
-    const VI writes = hn::Set(d, std::int32_t(s_.stencil.write_mask & 255));
-    next = hn::Or(hn::AndNot(writes, stencil), hn::And(writes, next));
-    VI to = kept;
-    if (d_.writes_depth) to = hn::IfThenElse(pass, depth, kept);
-    source.Store(target_.frame.depth.data(), hn::BitCast(DU(), hn::Or(hn::ShiftLeft<8>(to), next)), live);
-    return pass;
   }
 
   [[nodiscard]] static HWY_INLINE VI Operated(GLenum operation, VI v, VI ref) {
@@ -163,64 +179,83 @@ class FragmentStage {
   }
 
   template <class Source>
-  [[nodiscard]] HWY_INLINE FragmentColor ColorOfFragments(const Source& source) const {
-    FragmentColor color;
-    for (int k = 0; k < 4; ++k) color.c[k] = source.ColorOfVertex(k);
-    if (!samplers_.empty()) color = WithTextures(source, color);
-    if (d_.adds_secondary)
-      for (int k = 0; k < 3; ++k) color.c[k] = hn::Min(hn::Add(color.c[k], source.ColorOfVertex(4 + k)), All(1));
+  HWY_INLINE void ColorFragments(const Source& source, std::size_t count, FragmentColor* color) const {
+    if (const FragmentColor* const pixels = source.Pixels()) std::copy_n(pixels, count, color);
+    for (int k = 0; k < 4 && !source.Pixels(); ++k) {
+      const auto of = source.ColorOfVertex(k);
+      for (std::size_t v = 0; v < count; ++v) color[v].c[k] = of(v);
+    }
+    if (!samplers_.empty()) ApplyTextures(source, count, color);
+    for (int k = 0; k < 3 && d_.adds_secondary; ++k) {
+      const auto of = source.ColorOfVertex(4 + k);
+      for (std::size_t v = 0; v < count; ++v) color[v].c[k] = hn::Min(hn::Add(color[v].c[k], of(v)), All(1));
+    }
     if (d_.has_fog) {
-      const VF factor = FogOf(source.Varying(kOutFog));
-      for (int k = 0; k < 3; ++k) color.c[k] = Mixed(All(s_.fog.color[k]), color.c[k], factor);
+      const auto of = source.Varying(kOutFog);
+      for (std::size_t v = 0; v < count; ++v) {
+        const VF factor = FogOf(of(v));
+        for (int k = 0; k < 3; ++k) color[v].c[k] = Mixed(All(s_.fog.color[k]), color[v].c[k], factor);
+      }
     }
-    color.c[3] = source.Covered(color.c[3]);
-    return color;
+    for (std::size_t v = 0; v < count; ++v) color[v].c[3] = source.Covered(v, color[v].c[3]);
   }
 
   template <class Source>
-  [[nodiscard]] HWY_NOINLINE FragmentColor WithTextures(const Source& source, const FragmentColor& primary) const {
-    FragmentColor texels[kTextureUnits], color = primary;
-    // A combiner may name a unit without a texture; it reads black.
+  HWY_NOINLINE void ApplyTextures(const Source& source, std::size_t count, FragmentColor* color) const {
+    FragmentColor primary[kBlock], texels[kTextureUnits][kBlock];
     if (combines_)
-      for (FragmentColor& texel : texels) texel = AllOf(glm::vec4(0, 0, 0, 1));
+      for (std::size_t v = 0; v < count; ++v) {
+        primary[v] = color[v];
+        // A combiner may name a unit without a texture; it reads black.
+        for (auto& of_unit : texels) of_unit[v] = AllOf(glm::vec4(0, 0, 0, 1));
+      }
     for (std::size_t i = 0; i < samplers_.size(); ++i) {
-      const int unit = d_.textures[i].unit;
-      texels[unit] = samplers_[i].Sample(PlaceIn(source, d_.textures[i]));
-      for (VF& v : texels[unit].c) v = hn::Mul(v, All(1.0f / 255));
+      TexPlaces at;
+      FindPlaces(source, count, d_.textures[i], at);
+      samplers_[i].Sample(count, at, texels[d_.textures[i].unit]);
     }
-    for (const BoundTexture& t : d_.textures) color = Textured(d_, t, primary, color, texels);
-    return color;
+    for (const BoundTexture& t : d_.textures) {
+      const TextureUnitState& unit = s_.texture.units[std::size_t(t.unit)];
+      if (unit.env_mode != GL_COMBINE) {
+        ApplyTexture(unit, t.base_format, count, texels[t.unit], color);
+        continue;
+      }
+      for (std::size_t v = 0; v < count; ++v) {
+        FragmentColor of_units[kTextureUnits];
+        for (int k = 0; k < kTextureUnits; ++k) of_units[k] = texels[k][v];
+        color[v] = Combined(unit, t.unit, primary[v], color[v], of_units);
+      }
+    }
   }
 
   template <class Source>
-  [[nodiscard]] HWY_INLINE TexPlace PlaceIn(const Source& source, const BoundTexture& t) const {
-    const int at = kOutTexCoord + 3 * t.unit;
-    TexPlace place{source.Varying(at), source.Varying(at + 1), hn::Zero(DF())};
-    const VF q = source.Varying(at + 2);
-    VF inverse = All(1);
-    if (!hn::AllTrue(DF(), hn::Eq(q, inverse))) {
-      inverse = hn::Div(inverse, q);
-      place.s = hn::Mul(place.s, inverse);
-      place.t = hn::Mul(place.t, inverse);
-    }
-    if (!t.minifies_by_levels && t.is_linear_min == t.is_linear_mag) return place;
+  HWY_INLINE void FindPlaces(const Source& source, std::size_t count, const BoundTexture& t, TexPlaces& to) const {
+    const int first = kOutTexCoord + 3 * t.unit;
+    const bool needs_change = t.minifies_by_levels || t.is_linear_min != t.is_linear_mag;
     const float size[2] = {float(t.packed->width[0]), t.is_1d ? 0.0f : float(t.packed->height[0])};
-    VF across = hn::Zero(DF()), up = across;
-    for (int k = 0; k < 2; ++k) {
-      VF dx, dy;
-      source.Changes(at + k, dx, dy);
-      VF qx, qy;
-      source.Changes(at + 2, qx, qy);
-      const VF v = k == 0 ? place.s : place.t;
-      dx = hn::Mul(hn::Sub(dx, hn::Mul(v, qx)), inverse);
-      dy = hn::Mul(hn::Sub(dy, hn::Mul(v, qy)), inverse);
-      dx = hn::Mul(dx, All(size[k]));
-      dy = hn::Mul(dy, All(size[k]));
-      across = hn::Add(across, hn::Mul(dx, dx));
-      up = hn::Add(up, hn::Mul(dy, dy));
+    const auto of_s = source.Varying(first), of_t = source.Varying(first + 1), of_q = source.Varying(first + 2);
+    for (std::size_t v = 0; v < count; ++v) {
+      VF place[2] = {of_s(v), of_t(v)}, inverse = All(1);
+      const VF q = of_q(v);
+      if (!hn::AllTrue(DF(), hn::Eq(q, inverse))) {
+        inverse = hn::Div(inverse, q);
+        for (VF& along : place) along = hn::Mul(along, inverse);
+      }
+      to.s[v] = place[0];
+      to.t[v] = place[1];
+      if (!needs_change) continue;
+      VF across = hn::Zero(DF()), up = across, qx, qy;
+      source.Changes(v, first + 2, qx, qy);
+      for (int k = 0; k < 2; ++k) {
+        VF dx, dy;
+        source.Changes(v, first + k, dx, dy);
+        dx = hn::Mul(hn::Mul(hn::Sub(dx, hn::Mul(place[k], qx)), inverse), All(size[k]));
+        dy = hn::Mul(hn::Mul(hn::Sub(dy, hn::Mul(place[k], qy)), inverse), All(size[k]));
+        across = hn::Add(across, hn::Mul(dx, dx));
+        up = hn::Add(up, hn::Mul(dy, dy));
+      }
+      to.change[v] = hn::Min(hn::Max(across, up), All(1e30f));
     }
-    place.change = hn::Min(hn::Max(across, up), All(1e30f));
-    return place;
   }
 
   [[nodiscard]] HWY_INLINE VF FogOf(VF distance) const {
@@ -236,31 +271,38 @@ class FragmentStage {
 
   /// Blends and writes.
   template <class Source>
-  HWY_INLINE void Finish(const Source& source, MI live, FragmentColor color) {
+  HWY_INLINE void Finish(Source& source, std::size_t count, const FragmentColor* color) {
     const DU du;
-    if (target_.passed) passed_ += hn::CountTrue(DI(), live);
+    for (std::size_t v = 0; v < count && target_.passed; ++v) passed_ += hn::CountTrue(DI(), source.live[v]);
     if (d_.color_mask == 0) return;
-    if (!target_.frame.ids.empty()) source.Store(target_.frame.ids.data(), source.Id(), live);
-    const bool has_logic = s_.capabilities.has(Capability::color_logic_op);
-    VU kept{};
-    if (d_.blends || has_logic || d_.color_mask != 0xFFFFFFFF) kept = source.Load(target_.frame.color.data());
-    if (d_.blends && !is_over_) color = Blended(color, ColorOf(kept));
-    for (VF& v : color.c) v = Saturated(v);
-    const VF alpha = color.c[3];
-    const FragmentColor below = is_over_ ? ColorOf(kept) : FragmentColor();
-    VU word = hn::Zero(du);
-    for (int k = 0; k < 4; ++k) {
-      VF value = hn::Mul(color.c[k], All(255));
-      if (is_over_) value = Mixed(below.c[k], value, alpha);
-      const VI byte = hn::NearestInt(value);
-      word = hn::Or(word, hn::Shl(hn::BitCast(du, byte), hn::Set(du, std::uint32_t(8 * k))));
+    for (std::size_t v = 0; v < count && !target_.frame.ids.empty(); ++v)
+      source.Store(v, target_.frame.ids.data(), source.Id(v), source.live[v]);
+    std::uint32_t* const plane = target_.frame.color.data();
+    const bool has_logic = s_.capabilities.has(Capability::color_logic_op), is_over = is_over_,
+               blends = d_.blends && !is_over, is_masked = d_.color_mask != 0xFFFFFFFF;
+    for (std::size_t v = 0; v < count; ++v) {
+      FragmentColor c = color[v], below;
+      VU kept{};
+      if (d_.blends || has_logic || is_masked) kept = source.Load(v, plane);
+      if (blends) c = Blended(c, ColorOf(kept));
+      if (is_over) below = ColorOf(kept);
+      const VF alpha = Saturated(c.c[3]);
+      VU bytes[4];
+      for (int k = 0; k < 4; ++k) {
+        VF value = hn::Mul(Saturated(c.c[k]), All(255));
+        if (is_over) value = Mixed(below.c[k], value, alpha);
+        // The sum has no room for fractions: it is rounded to the whole number in its lowest bits.
+        bytes[k] = hn::BitCast(du, hn::Add(value, All(8388608)));
+      }
+      VU word = hn::Or(hn::Or(hn::ShiftLeft<8>(bytes[1]), hn::ShiftLeft<16>(bytes[2])), hn::ShiftLeft<24>(bytes[3]));
+      word = hn::Or(word, hn::And(bytes[0], hn::Set(du, 255)));
+      if (has_logic) word = Logic(s_.color.logic_op, word, kept);
+      if (is_masked) {
+        const VU mask = hn::Set(du, d_.color_mask);
+        word = hn::Or(hn::And(word, mask), hn::AndNot(mask, kept));
+      }
+      source.Store(v, plane, word, source.live[v]);
     }
-    if (has_logic) word = Logic(s_.color.logic_op, word, kept);
-    if (d_.color_mask != 0xFFFFFFFF) {
-      const VU mask = hn::Set(du, d_.color_mask);
-      word = hn::Or(hn::And(word, mask), hn::AndNot(mask, kept));
-    }
-    source.Store(target_.frame.color.data(), word, live);
   }
 
   /// `kept` is from 0 to 255.
@@ -286,48 +328,33 @@ class FragmentStage {
     return to;
   }
 
-  [[nodiscard]] HWY_INLINE VF Factor(GLenum name, int k, const FragmentColor& from, const FragmentColor& kept) const {
+  [[nodiscard]] VF Factor(GLenum name, int k, const FragmentColor& from, const FragmentColor& kept) const {
     const VF one = All(1);
-    const glm::vec4& constant = s_.color.blend_color;
+    // The name of one minus a factor follows the factor's.
+    for (const int plain :
+         {GL_SRC_COLOR, GL_DST_COLOR, GL_SRC_ALPHA, GL_DST_ALPHA, GL_CONSTANT_COLOR, GL_CONSTANT_ALPHA})
+      if (name == GLenum(plain) + 1) return hn::Sub(one, Factor(GLenum(plain), k, from, kept));
     switch (name) {
       case GL_ZERO: return hn::Zero(DF());
       case GL_SRC_COLOR: return from.c[k];
-      case GL_ONE_MINUS_SRC_COLOR: return hn::Sub(one, from.c[k]);
       case GL_DST_COLOR: return kept.c[k];
-      case GL_ONE_MINUS_DST_COLOR: return hn::Sub(one, kept.c[k]);
       case GL_SRC_ALPHA: return from.c[3];
-      case GL_ONE_MINUS_SRC_ALPHA: return hn::Sub(one, from.c[3]);
       case GL_DST_ALPHA: return kept.c[3];
-      case GL_ONE_MINUS_DST_ALPHA: return hn::Sub(one, kept.c[3]);
       case GL_SRC_ALPHA_SATURATE: return k == 3 ? one : hn::Min(from.c[3], hn::Sub(one, kept.c[3]));
-      case GL_CONSTANT_COLOR: return All(constant[k]);
-      case GL_ONE_MINUS_CONSTANT_COLOR: return All(1 - constant[k]);
-      case GL_CONSTANT_ALPHA: return All(constant.a);
-      case GL_ONE_MINUS_CONSTANT_ALPHA: return All(1 - constant.a);
+      case GL_CONSTANT_COLOR: return All(s_.color.blend_color[k]);
+      case GL_CONSTANT_ALPHA: return All(s_.color.blend_color.a);
       default: return one;
     }
   }
 
+  /// The lowest bits of the operation's name say for which pairs of bits the result is 1.
   [[nodiscard]] static HWY_NOINLINE VU Logic(GLenum operation, VU s, VU t) {
-    const VU all = hn::Set(DU(), 0xFFFFFFFF);
-    switch (operation) {
-      case GL_CLEAR: return hn::Zero(DU());
-      case GL_AND: return hn::And(s, t);
-      case GL_AND_REVERSE: return hn::AndNot(t, s);
-      case GL_AND_INVERTED: return hn::AndNot(s, t);
-      case GL_NOOP: return t;
-      case GL_XOR: return hn::Xor(s, t);
-      case GL_OR: return hn::Or(s, t);
-      case GL_NOR: return hn::Not(hn::Or(s, t));
-      case GL_EQUIV: return hn::Not(hn::Xor(s, t));
-      case GL_INVERT: return hn::Not(t);
-      case GL_OR_REVERSE: return hn::Or(s, hn::Not(t));
-      case GL_COPY_INVERTED: return hn::Not(s);
-      case GL_OR_INVERTED: return hn::Or(hn::Not(s), t);
-      case GL_NAND: return hn::Not(hn::And(s, t));
-      case GL_SET: return all;
-      default: return s;  // GL_COPY
-    }
+    VU word = hn::Zero(DU());
+    if ((operation & 1) != 0) word = hn::And(s, t);
+    if ((operation & 2) != 0) word = hn::Or(word, hn::AndNot(t, s));
+    if ((operation & 4) != 0) word = hn::Or(word, hn::AndNot(s, t));
+    if ((operation & 8) != 0) word = hn::Or(word, hn::Not(hn::Or(s, t)));
+    return word;
   }
 
  public:

@@ -57,23 +57,36 @@ HWY_INLINE VertexWeights Divided(const VertexWeights& w, const VF (&inverse_w)[3
   return to;
 }
 
-/// Fragments of any pixels and triangles.
+/// A vector of fragments of any pixels and triangles.
 struct ListSource {
   const Batch& batch;
   VI at;  ///< index of the pixel in the frame's planes
   VU id;  ///< running number of the primitive
   VI v[3], provoking;
-  VI back;  ///< 1 where the triangle is seen from behind and has colors for that
-  VertexWeights weights;
+  VI back;               ///< 1 where the triangle is seen from behind and has colors for that
+  VertexWeights window;  ///< weights before their division by w
   bool is_flat;
   const float* coverage;  ///< of each lane, for smooth lines and points, or null
+  VertexWeights weights{};
+  MI live[1]{};
+  VI depth[1]{};
 
-  [[nodiscard]] HWY_INLINE VU Id() const { return id; }
-  [[nodiscard]] HWY_INLINE VF Covered(VF alpha) const {
+  HWY_INLINE void Weigh(std::size_t, bool needs_change) {
+    const float* const w = batch.inverse_w();
+    const VF inverse_w[3] = {hn::GatherIndex(DF(), w, v[0]), hn::GatherIndex(DF(), w, v[1]),
+                             hn::GatherIndex(DF(), w, v[2])};
+    weights = Divided(window, inverse_w, needs_change);
+  }
+  static void Move(std::size_t, std::size_t) {}
+  static const FragmentColor* Pixels() { return nullptr; }
+  [[nodiscard]] HWY_INLINE VU Id(std::size_t) const { return id; }
+  [[nodiscard]] HWY_INLINE VF Covered(std::size_t, VF alpha) const {
     return coverage ? hn::Mul(alpha, hn::Load(DF(), coverage)) : alpha;
   }
-  [[nodiscard]] HWY_INLINE VU Load(const std::uint32_t* plane) const { return hn::GatherIndex(DU(), plane, at); }
-  HWY_INLINE void Store(std::uint32_t* plane, VU words, MI lanes) const {
+  [[nodiscard]] HWY_INLINE VU Load(std::size_t, const std::uint32_t* plane) const {
+    return hn::GatherIndex(DU(), plane, at);
+  }
+  HWY_INLINE void Store(std::size_t, std::uint32_t* plane, VU words, MI lanes) const {
     const DI d;
     HWY_ALIGN_MAX std::uint32_t word[kMaxLanes];
     HWY_ALIGN_MAX std::int32_t to[kMaxLanes];
@@ -81,15 +94,19 @@ struct ListSource {
     hn::Store(at, d, to);
     ForEachBit(BitsOf(d, lanes), [&](std::size_t lane) { plane[to[lane]] = word[lane]; });
   }
-  [[nodiscard]] HWY_INLINE VF ColorOfVertex(int k) const {
-    const DI d;
-    const float* column = batch.output(kOutRed + k);
-    const VI shift = hn::Mul(back, hn::Set(d, std::int32_t((kOutBack - kOutRed) * int(batch.output_stride()))));
-    if (is_flat) return hn::GatherIndex(DF(), column, hn::Add(provoking, shift));
-    return Between(column, {hn::Add(v[0], shift), hn::Add(v[1], shift), hn::Add(v[2], shift)});
+  [[nodiscard]] HWY_INLINE auto ColorOfVertex(int k) const {
+    return [this, k](std::size_t) HWY_ATTR {
+      const DI d;
+      const float* column = batch.output(kOutRed + k);
+      const VI shift = hn::Mul(back, hn::Set(d, std::int32_t((kOutBack - kOutRed) * int(batch.output_stride()))));
+      if (is_flat) return hn::GatherIndex(DF(), column, hn::Add(provoking, shift));
+      return Between(column, hn::Add(v[0], shift), hn::Add(v[1], shift), hn::Add(v[2], shift));
+    };
   }
-  [[nodiscard]] HWY_INLINE VF Varying(int k) const { return Between(batch.output(k), {v[0], v[1], v[2]}); }
-  HWY_INLINE void Changes(int k, VF& dx, VF& dy) const {
+  [[nodiscard]] HWY_INLINE auto Varying(int k) const {
+    return [this, k](std::size_t) HWY_ATTR { return Between(batch.output(k), v[0], v[1], v[2]); };
+  }
+  HWY_INLINE void Changes(std::size_t, int k, VF& dx, VF& dy) const {
     const float* column = batch.output(k);
     const VF a = hn::GatherIndex(DF(), column, v[0]), b = hn::Sub(hn::GatherIndex(DF(), column, v[1]), a),
              c = hn::Sub(hn::GatherIndex(DF(), column, v[2]), a);
@@ -98,44 +115,66 @@ struct ListSource {
   }
 
  private:
-  struct Three {
-    VI v[3];
-  };
-  [[nodiscard]] HWY_INLINE VF Between(const float* column, const Three& at_vertex) const {
-    const DF df;
-    const VF a = hn::GatherIndex(df, column, at_vertex.v[0]), b = hn::GatherIndex(df, column, at_vertex.v[1]),
-             c = hn::GatherIndex(df, column, at_vertex.v[2]);
+  [[nodiscard]] HWY_INLINE VF Between(const float* column, VI i, VI j, VI l) const {
+    const VF a = hn::GatherIndex(DF(), column, i), b = hn::GatherIndex(DF(), column, j),
+             c = hn::GatherIndex(DF(), column, l);
     const VF sum = hn::Add(a, hn::Mul(weights.of[0], hn::Sub(b, a)));
     return hn::Add(sum, hn::Mul(weights.of[1], hn::Sub(c, a)));
   }
 };
 
-/// Fragments side by side in a row of one triangle.
+/// Vectors of fragments side by side in rows of one triangle, or of a rectangle of pixels.
 struct RowSource {
-  std::size_t at;  ///< index of the first pixel
   std::uint32_t id;
-  VertexWeights weights;
-  const float (*values)[3];  ///< by varying: of vertex 0, and what vertices 1 and 2 differ by
+  float values[kVaryings][3];  ///< of vertex 0, and what vertices 1 and 2 differ by
+  bool is_affine, has_pixels = false;
+  VF inverse_w[3];     ///< of the vertices
+  VertexWeights step;  ///< `x` and `y`
+  // Weights start from doubles at every 16th pixel, so that they do not depend on the number of lanes.
+  double at_column[kTileSize / 16][2], by_row[2];
+  std::int32_t x[kBlock], y[kBlock];  ///< first pixels, in the tile
+  std::size_t at[kBlock];             ///< their indices in the frame's planes
+  MI live[kBlock];
+  VI depth[kBlock];
+  FragmentColor pixels[kBlock];  ///< in the place of the colors of vertices, if there are any
+  VertexWeights weights[kBlock];
 
-  [[nodiscard]] HWY_INLINE VU Load(const std::uint32_t* plane) const { return hn::LoadU(DU(), plane + at); }
-  HWY_INLINE void Store(std::uint32_t* plane, VU words, MI lanes) const {
+  HWY_INLINE void Weigh(std::size_t count, bool needs_change) {
+    for (std::size_t v = 0; v < count; ++v) {
+      const int anchor = x[v] & ~15;
+      const VF steps = hn::ConvertTo(DF(), CountFrom(DI(), x[v] - anchor));
+      VertexWeights w = step;
+      for (int k = 0; k < 2; ++k)
+        w.of[k] = hn::Add(All(float(at_column[anchor / 16][k] + by_row[k] * y[v])), hn::Mul(steps, w.x[k]));
+      weights[v] = is_affine ? w : Divided(w, inverse_w, needs_change);
+    }
+  }
+  HWY_INLINE void Move(std::size_t to, std::size_t from) {
+    x[to] = x[from], y[to] = y[from], at[to] = at[from], live[to] = live[from], depth[to] = depth[from];
+    if (has_pixels) pixels[to] = pixels[from];
+  }
+  [[nodiscard]] HWY_INLINE VU Load(std::size_t v, const std::uint32_t* plane) const {
+    return hn::LoadU(DU(), plane + at[v]);
+  }
+  HWY_INLINE void Store(std::size_t v, std::uint32_t* plane, VU words, MI lanes) const {
     const DU d;
-    const auto mask = hn::RebindMask(d, lanes);
-    hn::StoreU(hn::IfThenElse(mask, words, hn::LoadU(d, plane + at)), d, plane + at);
+    hn::StoreU(hn::IfThenElse(hn::RebindMask(d, lanes), words, hn::LoadU(d, plane + at[v])), d, plane + at[v]);
   }
-  [[nodiscard]] HWY_INLINE VU Id() const { return hn::Set(DU(), id); }
-  [[nodiscard]] static HWY_INLINE VF Covered(VF alpha) { return alpha; }
-  [[nodiscard]] HWY_INLINE VF ColorOfVertex(int k) const { return Varying(kOutRed + k); }
-  [[nodiscard]] HWY_INLINE VF Varying(int k) const {
-    const float* const v = values[k];
-    if (v[1] == 0 && v[2] == 0) return All(v[0]);
-    const VF sum = hn::Add(All(v[0]), hn::Mul(weights.of[0], All(v[1])));
-    return hn::Add(sum, hn::Mul(weights.of[1], All(v[2])));
+  [[nodiscard]] HWY_INLINE VU Id(std::size_t) const { return hn::Set(DU(), id); }
+  [[nodiscard]] static HWY_INLINE VF Covered(std::size_t, VF alpha) { return alpha; }
+  [[nodiscard]] HWY_INLINE auto Varying(int k) const {
+    const VF a = All(values[k][0]), b = All(values[k][1]), c = All(values[k][2]);
+    const bool is_constant = values[k][1] == 0 && values[k][2] == 0;
+    return [w = weights, a, b, c, is_constant](std::size_t v) HWY_ATTR {
+      return is_constant ? a : hn::Add(hn::Add(a, hn::Mul(w[v].of[0], b)), hn::Mul(w[v].of[1], c));
+    };
   }
-  HWY_INLINE void Changes(int k, VF& dx, VF& dy) const {
-    const float* const v = values[k];
-    dx = hn::Add(hn::Mul(weights.x[0], All(v[1])), hn::Mul(weights.x[1], All(v[2])));
-    dy = hn::Add(hn::Mul(weights.y[0], All(v[1])), hn::Mul(weights.y[1], All(v[2])));
+  [[nodiscard]] HWY_INLINE auto ColorOfVertex(int k) const { return Varying(kOutRed + k); }
+  [[nodiscard]] const FragmentColor* Pixels() const { return has_pixels ? pixels : nullptr; }
+  HWY_INLINE void Changes(std::size_t v, int k, VF& dx, VF& dy) const {
+    const VF b = All(values[k][1]), c = All(values[k][2]);
+    dx = hn::Add(hn::Mul(weights[v].x[0], b), hn::Mul(weights[v].x[1], c));
+    dy = hn::Add(hn::Mul(weights[v].y[0], b), hn::Mul(weights[v].y[1], c));
   }
 };
 
@@ -326,7 +365,7 @@ class BatchInTile {
                         is_flat_,
                         nullptr};
       if (is_flat_) source.provoking = hn::GatherIndex(d, b_.provoking.data(), hn::ShiftRight<1>(id));
-      VertexWeights w;
+      VertexWeights& w = source.window;
       const VF inverse_area = pick_f(inverse_area_);
       for (int k = 0; k < 2; ++k) {
         const int e = k == 0 ? 2 : 0;
@@ -336,12 +375,6 @@ class BatchInTile {
         w.x[k] = hn::Mul(hn::ConvertTo(df, by_x), inverse_area);
         w.y[k] = hn::Mul(hn::ConvertTo(df, by_y), inverse_area);
       }
-      const float* const inverse_w = b_.inverse_w();
-      source.weights =
-          Divided(w,
-                  {hn::GatherIndex(df, inverse_w, source.v[0]), hn::GatherIndex(df, inverse_w, source.v[1]),
-                   hn::GatherIndex(df, inverse_w, source.v[2])},
-                  stage_.needs_change());
       const VF offset = has_offset_ ? hn::GatherIndex(df, offset_, lane) : hn::Zero(df);
       MI covered = is_live;
       if (is_stippled_) covered = hn::And(covered, Stippled(frame_x, frame_y));
@@ -350,40 +383,21 @@ class BatchInTile {
   }
 
   /// Processes the fragments of a list, one pass for each repetition of a pixel.
-  HWY_NOINLINE void InOrder(const ListSource& source, MI live, VI depth) {
+  HWY_NOINLINE void InOrder(ListSource& source, MI left, VI depth) {
     const DI d;
     HWY_ALIGN_MAX std::int32_t at[kMaxLanes];
-    hn::Store(source.at, d, at);
-    MI repeats = hn::Lt(hn::Zero(d), hn::Zero(d));
-    for (std::size_t k = 0; k + 1 < hn::Lanes(d); ++k) {
-      const MI later = hn::Gt(hn::Iota(d, 0), hn::Set(d, std::int32_t(k)));
-      repeats = hn::Or(repeats, hn::And(later, hn::Eq(source.at, hn::Set(d, at[k]))));
-    }
-    const bool has_repeats = !hn::AllFalse(d, hn::And(repeats, live));
-    std::uint64_t left = BitsOf(d, live);
     do {
-      const std::uint64_t now = has_repeats ? FirstOf(left, at) : left;
-      stage_.Process(source, has_repeats ? LanesOf(now) : live, depth);
-      left &= ~now;
-    } while (left != 0);
-  }
-
-  [[nodiscard]] static MI LanesOf(std::uint64_t bits) {
-    HWY_ALIGN_MAX std::int32_t lanes[kMaxLanes] = {};
-    ForEachBit(bits, [&](std::size_t lane) { lanes[lane] = -1; });
-    return hn::MaskFromVec(hn::Load(DI(), lanes));
-  }
-
-  /// The lanes of `lanes` whose pixel no lane before them has.
-  [[nodiscard]] static std::uint64_t FirstOf(std::uint64_t lanes, const std::int32_t* at) {
-    std::uint64_t first = 0;
-    ForEachBit(lanes, [&](std::size_t lane) {
-      bool is_first = true;
-      ForEachBit(lanes & ((std::uint64_t(1) << lane) - 1),
-                 [&](std::size_t before) { is_first &= at[before] != at[lane]; });
-      first |= std::uint64_t(is_first) << lane;
-    });
-    return first;
+      hn::Store(hn::IfThenElse(left, source.at, hn::Set(d, -1)), d, at);
+      MI repeats = hn::Lt(hn::Zero(d), hn::Zero(d));  // lanes whose pixel one before them has
+      for (std::size_t k = 0; k + 1 < hn::Lanes(d); ++k) {
+        const MI later = hn::Gt(hn::Iota(d, 0), hn::Set(d, std::int32_t(k)));
+        repeats = hn::Or(repeats, hn::And(later, hn::Eq(source.at, hn::Set(d, at[k]))));
+      }
+      source.live[0] = hn::AndNot(repeats, left);
+      source.depth[0] = depth;
+      stage_.Process(source, 1);
+      left = hn::And(left, repeats);
+    } while (!hn::AllFalse(d, left));
   }
 
   [[nodiscard]] HWY_INLINE VI BackOf(VI id) const {
@@ -420,7 +434,7 @@ class BatchInTile {
   }
 
   /// The values of a triangle's vertices, as RowSource reads them.
-  void LoadValues(const RowTriangle& t, float (&values)[kVaryings][3]) const {
+  void LoadValues(const RowTriangle& t, float (*values)[3]) const {
     const auto load = [&](int to, int from, bool is_flat) {
       const float* const column = b_.output(from);
       if (is_flat) {
@@ -446,30 +460,31 @@ class BatchInTile {
     const glm::ivec2 centre(kCentre);
     PixelRect rect = common_part(sampled_rect(r, centre, centre, tile_.width, tile_.height), bounds_);
     if (rect.is_empty()) return;
-    float values[kVaryings][3];
-    LoadValues(t, values);
+    RowSource source;
+    source.id = b_.first_id + (r.id >> 1);
+    LoadValues(t, source.values);
     const KeyPlane plane(r);
     const SteepKeys steep = plane.is_steep ? SteepKeys(r) : SteepKeys();
     const TriangleEdges edges(r, centre);
     const VF offset = All(has_offset_ ? float(offset_of(d_.state.polygon, r)) : 0.0f);
     const double scale = 1 / double(doubled_area(r));
     const float* const of = b_.inverse_w();
-    const bool is_affine = of[t.vertices[0]] == of[t.vertices[1]] && of[t.vertices[0]] == of[t.vertices[2]];
-    VF inverse_w[3];
-    for (int k = 0; k < 3; ++k) inverse_w[k] = All(b_.inverse_w()[t.vertices[std::size_t(k)]]);
+    source.is_affine = of[t.vertices[0]] == of[t.vertices[1]] && of[t.vertices[0]] == of[t.vertices[2]];
+    for (int k = 0; k < 3; ++k) source.inverse_w[k] = All(of[t.vertices[std::size_t(k)]]);
     // Edges 2 and 0, opposite to vertices 1 and 2.
-    double ex[2], ey[2], from[2];
-    VertexWeights w;
     for (int k = 0; k < 2; ++k) {
       const int a = k == 0 ? 2 : 0, b = k == 0 ? 0 : 1;
-      ex[k] = -double(r.y[b] - r.y[a]) * kSubPixels * scale;
-      ey[k] = double(r.x[b] - r.x[a]) * kSubPixels * scale;
-      from[k] = (double(r.x[b] - r.x[a]) * (kCentre - r.y[a]) - double(r.y[b] - r.y[a]) * (kCentre - r.x[a])) * scale;
-      w.x[k] = All(float(ex[k]));
-      w.y[k] = All(float(ey[k]));
+      const double by_column = -double(r.y[b] - r.y[a]) * kSubPixels * scale;
+      source.by_row[k] = double(r.x[b] - r.x[a]) * kSubPixels * scale;
+      const double from =
+          (double(r.x[b] - r.x[a]) * (kCentre - r.y[a]) - double(r.y[b] - r.y[a]) * (kCentre - r.x[a])) * scale;
+      for (int i = 0; i < kTileSize / 16; ++i) source.at_column[i][k] = from + by_column * (16 * i);
+      source.step.x[k] = All(float(by_column));
+      source.step.y[k] = All(float(source.by_row[k]));
     }
     const int lanes = int(hn::Lanes(d)), first = rect.x0 / lanes * lanes;
     const VI right = hn::Set(d, rect.x1), left = hn::Set(d, rect.x0);
+    std::size_t count = 0;
     for (int y = rect.y0; y <= rect.y1; ++y) {
       VI e[3], step[3];
       for (int k = 0; k < 3; ++k) {
@@ -483,8 +498,8 @@ class BatchInTile {
         MI covered = hn::Gt(hn::Or(hn::Or(e[0], e[1]), e[2]), hn::Set(d, -1));
         for (int k = 0; k < 3; ++k) e[k] = hn::Add(e[k], step[k]);
         covered = hn::And(covered, hn::And(hn::Not(hn::Gt(column, right)), hn::Not(hn::Lt(column, left))));
-        const VI frame_x = hn::Add(column, hn::Set(d, tile_.x)), frame_y = hn::Set(d, tile_.y + y);
-        if (is_stippled_) covered = hn::And(covered, Stippled(frame_x, frame_y));
+        if (is_stippled_)
+          covered = hn::And(covered, Stippled(hn::Add(column, hn::Set(d, tile_.x)), hn::Set(d, tile_.y + y)));
         if (hn::AllFalse(d, covered)) continue;
         const VI sample = hn::Add(hn::ShiftLeft<8>(column), hn::Set(d, kCentre));
         VF z;
@@ -497,16 +512,17 @@ class BatchInTile {
           z = hn::Add(hn::Add(All(plane.k0), hn::Mul(dx, All(plane.gx))), down);
           z = hn::Min(hn::Max(z, All(plane.k_min)), All(plane.k_max));
         }
-        // Weights start from doubles at every 16th pixel, so that they do not depend on the number of lanes.
-        const int anchor = x & ~15;
-        const VF steps = hn::ConvertTo(df, CountFrom(d, x - anchor));
-        for (int k = 0; k < 2; ++k)
-          w.of[k] = hn::Add(All(float(from[k] + ex[k] * anchor + ey[k] * y)), hn::Mul(steps, w.x[k]));
-        const RowSource source{frame_.at(tile_.x + x, tile_.y + y), b_.first_id + (r.id >> 1),
-                               is_affine ? w : Divided(w, inverse_w, stage_.needs_change()), values};
-        stage_.Process(source, covered, StoredDepth(z, offset));
+        source.x[count] = x;
+        source.y[count] = y;
+        source.at[count] = frame_.at(tile_.x + x, tile_.y + y);
+        source.live[count] = covered;
+        source.depth[count] = StoredDepth(z, offset);
+        if (++count < kBlock) continue;
+        stage_.Process(source, count);
+        count = 0;
       }
     }
+    if (count > 0) stage_.Process(source, count);
   }
 
   void DrawLine(const WindowLine& line) {
@@ -615,18 +631,16 @@ class BatchInTile {
     const VI x = hn::Load(d, line_x_), y = hn::Load(d, line_y_);
     const std::int32_t a = line.vertex[0], b = line.vertex[1];
     const VF zero = hn::Zero(df);
-    const VertexWeights w{{hn::Load(df, line_t_), zero}, {zero, zero}, {zero, zero}};
-    const VF inverse_w[3] = {All(b_.inverse_w()[a]), All(b_.inverse_w()[b]), All(b_.inverse_w()[b])};
-    const ListSource source{b_,
-                            hn::Add(hn::Mul(y, hn::Set(d, std::int32_t(frame_.stride))), x),
-                            hn::Set(DU(), b_.first_id + line.number),
-                            {hn::Set(d, a), hn::Set(d, b), hn::Set(d, b)},
-                            hn::Set(d, line.provoking),
-                            hn::Set(d, d_.is_two_sided && line.is_back ? 1 : 0),
-                            Divided(w, inverse_w, stage_.needs_change()),
-                            is_flat_,
-                            is_smooth_ ? line_coverage_ : nullptr};
-    const VF z = Mixed(All(b_.window_z()[a]), All(b_.window_z()[b]), w.of[0]);
+    ListSource source{b_,
+                      hn::Add(hn::Mul(y, hn::Set(d, std::int32_t(frame_.stride))), x),
+                      hn::Set(DU(), b_.first_id + line.number),
+                      {hn::Set(d, a), hn::Set(d, b), hn::Set(d, b)},
+                      hn::Set(d, line.provoking),
+                      hn::Set(d, d_.is_two_sided && line.is_back ? 1 : 0),
+                      {{hn::Load(df, line_t_), zero}, {zero, zero}, {zero, zero}},
+                      is_flat_,
+                      is_smooth_ ? line_coverage_ : nullptr};
+    const VF z = Mixed(All(b_.window_z()[a]), All(b_.window_z()[b]), source.window.of[0]);
     InOrder(source, live, StoredDepth(z, All(float(line.offset))));
   }
 
@@ -655,32 +669,6 @@ class BatchInTile {
   std::size_t line_count_ = 0;
 };
 
-/// Fragments side by side of a rectangle of pixels.
-struct RectangleSource {
-  std::size_t at;
-  std::uint32_t id;
-  const RasterPosition& raster;
-  FragmentColor color;
-
-  [[nodiscard]] HWY_INLINE VU Id() const { return hn::Set(DU(), id); }
-
-  [[nodiscard]] HWY_INLINE VU Load(const std::uint32_t* plane) const { return hn::LoadU(DU(), plane + at); }
-  HWY_INLINE void Store(std::uint32_t* plane, VU words, MI lanes) const {
-    const DU d;
-    const auto mask = hn::RebindMask(d, lanes);
-    hn::StoreU(hn::IfThenElse(mask, words, hn::LoadU(d, plane + at)), d, plane + at);
-  }
-  [[nodiscard]] static HWY_INLINE VF Covered(VF alpha) { return alpha; }
-  [[nodiscard]] HWY_INLINE VF ColorOfVertex(int k) const { return k < 4 ? color.c[k] : All(raster.secondary[k - 4]); }
-  [[nodiscard]] HWY_INLINE VF Varying(int k) const {
-    if (k == kOutFog) return All(raster.distance);
-    const int i = k - kOutTexCoord;
-    const glm::vec4& coord = raster.texcoords[std::size_t(i / 3)];
-    return All(i % 3 == 2 ? coord.w : coord[i % 3]);
-  }
-  HWY_INLINE void Changes(int, VF& dx, VF& dy) const { dx = dy = hn::Zero(DF()); }
-};
-
 void PaintBatch(const PaintTarget& target, const Tile& tile, const Batch& batch) {
   const std::uint64_t passed = BatchInTile(target, tile, batch).Draw();
   if (target.passed) *target.passed += passed;
@@ -695,6 +683,15 @@ void PaintRectangle(const PaintTarget& target, const Tile& tile, const DrawState
   if (bounds.is_empty()) return;
   const RasterPosition& raster = draw.state.current.raster;
   FragmentStage stage(target, draw);
+  RowSource source{};
+  source.id = id;
+  source.is_affine = true;
+  source.has_pixels = r.kind == Kind::color;
+  for (int k = 0; k < 4; ++k) source.values[kOutRed + k][0] = raster.color[k];
+  for (int k = 0; k < 3; ++k) source.values[kOutRed2 + k][0] = raster.secondary[k];
+  source.values[kOutFog][0] = raster.distance;
+  for (int k = 0; k < 3 * kTextureUnits; ++k)
+    source.values[kOutTexCoord + k][0] = raster.texcoords[std::size_t(k / 3)][k % 3 == 2 ? 3 : k % 3];
   const int lanes = int(hn::Lanes(d));
   // The pixel of the rectangle that a window pixel shows, or -1.
   const auto shown = [](int pixel, float origin, float zoom, int size) {
@@ -725,19 +722,18 @@ void PaintRectangle(const PaintTarget& target, const Tile& tile, const DrawState
       }
       const MI mask = hn::MaskFromVec(hn::Load(d, live));
       const VU words = hn::Load(du, value);
-      RectangleSource source{target.frame.at(tile.x + x, tile.y + y), id, raster, AllOf(raster.color)};
+      source.at[0] = target.frame.at(tile.x + x, tile.y + y);
+      source.live[0] = mask;
       if (r.kind == Kind::stencil) {
-        const VU writes = hn::Set(du, stencil_writes), kept = source.Load(target.frame.depth.data());
-        source.Store(target.frame.depth.data(), hn::Or(hn::AndNot(writes, kept), hn::And(writes, words)), mask);
+        std::uint32_t* const plane = target.frame.depth.data();
+        const VU writes = hn::Set(du, stencil_writes);
+        source.Store(0, plane, hn::Or(hn::AndNot(writes, source.Load(0, plane)), hn::And(writes, words)), mask);
         continue;
       }
-      VI depth = StoredDepth(All(raster.window.z), hn::Zero(DF()));
-      if (r.kind == Kind::depth) depth = hn::BitCast(d, words);
-      if (r.kind == Kind::color) {
-        source.color = ColorOf(words);
-        for (VF& v : source.color.c) v = hn::Mul(v, All(1.0f / 255));
-      }
-      stage.Process(source, mask, depth);
+      source.depth[0] =
+          r.kind == Kind::depth ? hn::BitCast(d, words) : StoredDepth(All(raster.window.z), hn::Zero(DF()));
+      if (source.has_pixels) source.pixels[0] = Unit(ColorOf(words));
+      stage.Process(source, 1);
     }
   }
   if (target.passed) *target.passed += stage.passed();

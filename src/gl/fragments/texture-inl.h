@@ -28,47 +28,83 @@ struct FragmentColor {
 };
 HWY_INLINE VF Saturated(VF v) { return hn::Min(hn::Max(v, hn::Zero(DF())), All(1)); }
 HWY_INLINE VF Mixed(VF a, VF b, VF t) { return hn::Add(a, hn::Mul(hn::Sub(b, a), t)); }
+/// Whole numbers from 0 to 255 of a word, red lowest, as floats.
 HWY_INLINE FragmentColor ColorOf(VU word) {
-  FragmentColor color;
-  for (int k = 0; k < 4; ++k) {
-    const VU byte = hn::And(hn::Shr(word, hn::Set(DU(), std::uint32_t(8 * k))), hn::Set(DU(), 255));
-    color.c[k] = hn::ConvertTo(DF(), hn::BitCast(DI(), byte));
-  }
-  return color;
+  const VU byte = hn::Set(DU(), 255);
+  const auto of = [](VU v) HWY_ATTR { return hn::ConvertTo(DF(), hn::BitCast(DI(), v)); };
+  return {{of(hn::And(word, byte)), of(hn::And(hn::ShiftRight<8>(word), byte)),
+           of(hn::And(hn::ShiftRight<16>(word), byte)), of(hn::ShiftRight<24>(word))}};
 }
 HWY_INLINE FragmentColor AllOf(const glm::vec4& c) { return {{All(c.r), All(c.g), All(c.b), All(c.a)}}; }
 
-/// Texture coordinates of fragments, and the greater length of their change from pixel to pixel, squared, in
-/// texels of the base level; `change` is 0 if no filter asks for it.
-struct TexPlace {
-  VF s, t, change;
+/// Red and blue, and green and alpha: bytes in 16 bits each.
+struct Halves {
+  VU even, odd;
+};
+#if HWY_TARGET == HWY_SCALAR  // has no vectors of two halves
+/// Products of the two halves of each word, which fit into 16 bits.
+HWY_INLINE VU Times16(VU a, VU b) {
+  return hn::Set(DU(), (a.raw & 0xFFFF) * (b.raw & 0xFFFF) + ((a.raw >> 16) * (b.raw >> 16) << 16));
+}
+/// The upper bytes of the two halves of each word.
+HWY_INLINE VU HighBytes(VU a) { return hn::Set(DU(), a.raw >> 8 & 0x00FF00FF); }
+#else
+using D16 = hn::Repartition<std::uint16_t, DU>;
+HWY_INLINE VU Times16(VU a, VU b) { return hn::BitCast(DU(), hn::Mul(hn::BitCast(D16(), a), hn::BitCast(D16(), b))); }
+HWY_INLINE VU HighBytes(VU a) { return hn::BitCast(DU(), hn::ShiftRight<8>(hn::BitCast(D16(), a))); }
+#endif
+HWY_INLINE Halves HalvesOf(VU word) { return {hn::And(word, hn::Set(DU(), 0x00FF00FF)), HighBytes(word)}; }
+HWY_INLINE FragmentColor ColorOf(const Halves& h) {
+  const VU low = hn::Set(DU(), 0xFFFF);
+  const auto of = [](VU v) HWY_ATTR { return hn::ConvertTo(DF(), hn::BitCast(DI(), v)); };
+  return {{of(hn::And(h.even, low)), of(hn::And(h.odd, low)), of(hn::ShiftRight<16>(h.even)),
+           of(hn::ShiftRight<16>(h.odd))}};
+}
+/// From 0 to 1 what is from 0 to 255.
+HWY_INLINE FragmentColor Unit(FragmentColor color) {
+  for (VF& v : color.c) v = hn::Mul(v, All(1.0f / 255));
+  return color;
+}
+/// Colors between two, rounded to 8 bits a channel: 16 bits hold their weighted sum. `weight` has 1/256 of `b` twice.
+HWY_INLINE Halves Between(const Halves& a, const Halves& b, VU weight) {
+  const DU du;
+  const VU half = hn::Set(du, 0x00800080), rest = hn::Sub(hn::Set(du, 0x01000100), weight);
+  const auto mixed = [&](VU from, VU to) HWY_ATTR {
+    return HighBytes(hn::Add(hn::Add(Times16(from, rest), Times16(to, weight)), half));
+  };
+  return {mixed(a.even, b.even), mixed(a.odd, b.odd)};
+}
+
+/// Vectors in a block of fragments. Each step is done with a whole block, so that it asks for the state once.
+constexpr std::size_t kBlock = 64 / kMaxLanes;
+
+/// Texture coordinates of a block, and where a filter asks for it the square of the change to the next pixel, in
+/// texels.
+struct TexPlaces {
+  VF s[kBlock], t[kBlock], change[kBlock];
 };
 
 class Sampler {
  public:
-  explicit Sampler(const BoundTexture& bound) : b_(bound), t_(bound.texture), p_(*bound.packed) {
-    reads_pairs_ =
-        p_.border == 0 && (t_.wrap_s == GL_REPEAT || t_.wrap_s == GL_CLAMP_TO_EDGE || t_.wrap_s == GL_MIRRORED_REPEAT);
-    // The border has the components of the base format, as texels do: luminance is red.
-    const GLenum f = b_.base_format;
-    for (int k = 0; k < 4; ++k) {
-      const bool is_rgb = f == GL_RGB || f == GL_RGBA;
-      const int from = f == GL_INTENSITY || (k < 3 && !is_rgb) ? 0 : k;
-      const float part = HWY_MIN(HWY_MAX(t_.border_color[from], 0.0f), 1.0f);
-      border_word_ |= std::uint32_t(part * 255 + 0.5f) << (8 * k);
+  explicit Sampler(const BoundTexture& bound) : b_(bound), t_(bound.texture), p_(*bound.packed) {}
+
+  /// Colors from 0 to 1 of the first `count` vectors of a block.
+  HWY_INLINE void Sample(std::size_t count, TexPlaces& at, FragmentColor* to) const {
+    Wrap(count, at.s, t_.wrap_s);
+    Wrap(count, at.t, t_.wrap_t);
+    if (b_.minifies_by_levels || b_.is_linear_min != b_.is_linear_mag) {
+      for (std::size_t v = 0; v < count; ++v) to[v] = Unit(OfLevels(at.s[v], at.t[v], at.change[v]));
+      return;
     }
-    if (f == GL_RGB || f == GL_LUMINANCE) border_word_ |= 0xFF000000;
-    if (f == GL_ALPHA) border_word_ &= 0xFF000000;
+    SampleLevel<false>(count, nullptr, at.s, at.t, b_.is_linear_mag, to);
+    for (std::size_t v = 0; v < count; ++v) to[v] = Unit(to[v]);
   }
 
-  /// Colors from 0 to 255.
-  [[nodiscard]] HWY_INLINE FragmentColor Sample(const TexPlace& place) const {
+ private:
+  [[nodiscard]] HWY_NOINLINE FragmentColor OfLevels(VF s, VF t, VF change) const {
     const DF df;
-    const VF s = Wrapped(place.s, t_.wrap_s), t = Wrapped(place.t, t_.wrap_t);
-    if (!b_.minifies_by_levels && b_.is_linear_min == b_.is_linear_mag)
-      return InlineAt(hn::Zero(DI()), s, t, b_.is_linear_mag);
     // log2(sqrt(x)), far below any level where nothing changes.
-    VF lod = hn::Mul(All(0.5f), Log2(hn::Max(place.change, All(1e-30f))));
+    VF lod = hn::Mul(All(0.5f), Log2(hn::Max(change, All(1e-30f))));
     const float bias = t_.lod_bias + b_.lod_bias;
     lod = hn::Min(hn::Max(hn::Add(lod, All(bias)), All(t_.min_lod)), All(t_.max_lod));
     // GL_LINEAR magnifies up to half a level longer if minification takes the nearest texel.
@@ -82,7 +118,6 @@ class Sampler {
     return color;
   }
 
- private:
   [[nodiscard]] HWY_INLINE FragmentColor Minified(VF lod, VF s, VF t) const {
     const DI di;
     if (!b_.minifies_by_levels) return At(hn::Zero(di), s, t, b_.is_linear_min);
@@ -102,143 +137,100 @@ class Sampler {
     return color;
   }
 
-  /// A coordinate of finite size, by the mode of wrapping.
-  [[nodiscard]] static HWY_INLINE VF Wrapped(VF v, GLenum mode) {
-    v = hn::IfThenElseZero(hn::Lt(hn::Abs(v), All(1e30f)), v);  // also where it is not a number
-    switch (mode) {
-      case GL_CLAMP: return Saturated(v);
-      case GL_CLAMP_TO_EDGE:
-      case GL_CLAMP_TO_BORDER: return hn::Min(hn::Max(v, All(-2)), All(3));
-      case GL_MIRRORED_REPEAT: {
-        const VF twice = hn::Sub(v, hn::Mul(All(2), hn::Floor(hn::Mul(v, All(0.5f)))));
-        return hn::Min(twice, hn::Sub(All(2), twice));
-      }
-      default: return hn::Sub(v, hn::Floor(v));
-    }
-  }
-
-  /// Texel numbers along one axis, and the lanes that see the border color.
-  struct Texels {
-    VI index;
-    MI is_border;
-  };
-  [[nodiscard]] HWY_INLINE Texels Index(VI i, VI size, GLenum mode) const {
-    const DI d;
-    const VI zero = hn::Zero(d), last = hn::Sub(size, hn::Set(d, 1));
-    const VI inside = hn::Min(hn::Max(i, zero), last);
-    MI is_border = hn::Lt(zero, zero);
-    if (mode == GL_REPEAT) return {hn::And(i, last), is_border};
-    if (mode == GL_CLAMP || mode == GL_CLAMP_TO_BORDER) {
-      if (p_.border != 0) return {hn::Min(hn::Max(i, hn::Set(d, -1)), size), is_border};
-      is_border = hn::Ne(i, inside);
-    }
-    return {inside, is_border};
-  }
-
-  /// InlineAt() for textures with mip-maps, which call it several times.
-  [[nodiscard]] HWY_NOINLINE FragmentColor At(VI level, VF s, VF t, bool is_linear) const {
-    return InlineAt(level, s, t, is_linear);
-  }
-  [[nodiscard]] HWY_INLINE FragmentColor InlineAt(VI level, VF s, VF t, bool is_linear) const {
-    const DI d;
-    const DF df;
-    const bool is_one = b_.levels == 1;
-    const auto of_level = [&](const std::int32_t* table)
-                              HWY_ATTR { return is_one ? hn::Set(d, table[0]) : hn::GatherIndex(d, table, level); };
-    const VI width = of_level(p_.width), height = of_level(p_.height), first = of_level(p_.first);
-    VF u = hn::Mul(s, hn::ConvertTo(df, width)), v = hn::Mul(t, hn::ConvertTo(df, height));
-    if (!is_linear) {
-      const Texels x = Index(hn::ConvertTo(d, hn::Floor(u)), width, Nearest(t_.wrap_s));
-      const Texels y = Index(hn::ConvertTo(d, hn::Floor(v)), height, Nearest(t_.wrap_t));
-      return ColorOf(Fetch(first, width, x, y));
-    }
-    u = hn::Sub(u, All(0.5f));
-    v = hn::Sub(v, All(0.5f));
-    if (reads_pairs_ && t_.wrap_s != GL_REPEAT)
-      u = hn::Min(hn::Max(u, hn::Zero(df)), hn::ConvertTo(df, hn::Sub(width, hn::Set(d, 1))));
-    const VF left = hn::Floor(u), low = hn::Floor(v);
-    const VI i = hn::ConvertTo(d, left), j = hn::ConvertTo(d, low), one = hn::Set(d, 1);
-    const Texels x0 = Index(i, width, t_.wrap_s);
-    const VU across = Weight(hn::Sub(u, left));
-    const auto row = [&](const Texels& y) HWY_ATTR __attribute__((always_inline)) {
-      if (!reads_pairs_)
-        return Between(Fetch(first, width, x0, y), Fetch(first, width, Index(hn::Add(i, one), width, t_.wrap_s), y),
-                       across);
-      const TexelPair pair = PairFrom(PlaceOf(first, width, x0, y));
-      const VU value = Between(pair.left, pair.right, across);
-      return b_.is_1d ? value : hn::IfThenElse(hn::RebindMask(DU(), y.is_border), hn::Set(DU(), border_word_), value);
+  /// Makes coordinates of a block finite, by the mode of wrapping.
+  static HWY_INLINE void Wrap(std::size_t count, VF* at, GLenum mode) {
+    const auto each = [&](const auto& wrapped) HWY_ATTR {
+      for (std::size_t v = 0; v < count; ++v)
+        at[v] = wrapped(hn::IfThenElseZero(hn::Lt(hn::Abs(at[v]), All(1e30f)), at[v]));  // also where it is no number
     };
-    const VU lower = row(Index(j, height, t_.wrap_t));
-    if (b_.is_1d) return ColorOf(lower);
-    return ColorOf(Between(lower, row(Index(hn::Add(j, one), height, t_.wrap_t)), Weight(hn::Sub(v, low))));
+    switch (mode) {
+      case GL_CLAMP:
+      case GL_CLAMP_TO_EDGE: return each([](VF v) HWY_ATTR { return Saturated(v); });
+      case GL_CLAMP_TO_BORDER: return each([](VF v) HWY_ATTR { return hn::Min(hn::Max(v, All(-2)), All(3)); });
+      case GL_MIRRORED_REPEAT:
+        return each([](VF v) HWY_ATTR {
+          const VF twice = hn::Sub(v, hn::Mul(All(2), hn::Floor(hn::Mul(v, All(0.5f)))));
+          return hn::Min(twice, hn::Sub(All(2), twice));
+        });
+      default: return each([](VF v) HWY_ATTR { return hn::Sub(v, hn::Floor(v)); });
+    }
   }
 
-  /// A fraction in 1/256, twice in a word.
-  [[nodiscard]] static HWY_INLINE VU Weight(VF fraction) {
-    const VU w = hn::BitCast(DU(), hn::NearestInt(hn::Mul(fraction, All(256))));
-    return hn::Or(w, hn::ShiftLeft<16>(w));
+  [[nodiscard]] HWY_NOINLINE FragmentColor At(VI level, VF s, VF t, bool is_linear) const {
+    FragmentColor color;
+    SampleLevel<true>(1, &level, &s, &t, is_linear, &color);
+    return color;
   }
-  /// Colors between two, rounded to 8 bits a channel. Two channels at a time have 16 bits each, which their weighted
-  /// sum does not exceed.
-  [[nodiscard]] static HWY_INLINE VU Between(VU a, VU b, VU weight) {
-    const DU du;
-    const VU even = hn::Set(du, 0x00FF00FF), half = hn::Set(du, 0x00800080),
-             rest = hn::Sub(hn::Set(du, 0x01000100), weight);
-    const auto mixed = [&](VU from, VU to)
-                           HWY_ATTR { return hn::Add(hn::Add(Times16(from, rest), Times16(to, weight)), half); };
-    const VU low = hn::And(hn::ShiftRight<8>(mixed(hn::And(a, even), hn::And(b, even))), even);
-    const VU high = hn::AndNot(even, mixed(hn::And(hn::ShiftRight<8>(a), even), hn::And(hn::ShiftRight<8>(b), even)));
-    return hn::Or(low, high);
-  }
-  /// Products of the two halves of each word, which fit into 16 bits.
-  [[nodiscard]] static HWY_INLINE VU Times16(VU a, VU b) {
-#if HWY_TARGET == HWY_SCALAR  // has no vectors of two halves
-    return hn::Set(DU(), (a.raw & 0xFFFF) * (b.raw & 0xFFFF) + ((a.raw >> 16) * (b.raw >> 16) << 16));
-#else
-    const hn::Repartition<std::uint16_t, DU> d16;
-    return hn::BitCast(DU(), hn::Mul(hn::BitCast(d16, a), hn::BitCast(d16, b)));
-#endif
-  }
-  /// The nearest texel of GL_CLAMP is never the border.
-  [[nodiscard]] static GLenum Nearest(GLenum mode) { return mode == GL_CLAMP ? GLenum(GL_CLAMP_TO_EDGE) : mode; }
 
-  /// Numbers of texels in the packed texture.
-  [[nodiscard]] HWY_INLINE VI PlaceOf(VI first, VI width, const Texels& x, const Texels& y) const {
+  /// Samples one level of each fragment; without `has_levels`, the first one. Colors are from 0 to 255.
+  template <bool has_levels>
+  HWY_INLINE void SampleLevel(std::size_t count, const VI* level, const VF* s, const VF* t, bool is_linear,
+                              FragmentColor* to) const {
     const DI d;
-    const VI border = hn::Set(d, p_.border);
-    const VI stride = hn::Add(width, hn::Set(d, p_.border != 0 ? 2 * p_.border : 1));
-    const VI row = b_.is_1d ? hn::Zero(d) : hn::Mul(hn::Add(y.index, border), stride);
-    return hn::Add(hn::Add(first, row), hn::Add(x.index, border));
+    const auto of_level = [&](const std::int32_t* table, [[maybe_unused]] std::size_t v) HWY_ATTR {
+      if constexpr (has_levels)
+        return hn::GatherIndex(d, table, level[v]);
+      else
+        return hn::Set(d, table[0]);
+    };
+    const GLenum wrap_s = t_.wrap_s, wrap_t = t_.wrap_t;
+    HWY_ALIGN_MAX std::int32_t lower[kBlock * kMaxLanes], upper[has_levels ? kMaxLanes : 1];
+    VU across[kBlock], up[kBlock];
+    for (std::size_t v = 0; v < count; ++v) {
+      const VI width = of_level(p_.width, v), stride = hn::Add(width, hn::Set(d, 2));
+      const Steps x = StepsAlong(s[v], width, wrap_s, is_linear);
+      const Steps y = StepsAlong(t[v], of_level(p_.height, v), wrap_t, is_linear);
+      const VI at = hn::Add(of_level(p_.first, v), hn::Add(hn::Mul(y.texel, stride), x.texel));
+      hn::Store(at, d, lower + v * kMaxLanes);
+      if constexpr (has_levels) hn::Store(hn::Add(at, stride), d, upper);
+      across[v] = x.weight;
+      up[v] = y.weight;
+    }
+    const std::uint32_t *const texels = p_.texels.data(), *const above = texels + (has_levels ? 0 : p_.width[0] + 2);
+    for (std::size_t v = 0; v < count; ++v) {
+      const std::int32_t *const below = lower + v * kMaxLanes, *const next = has_levels ? upper : below;
+      to[v] = is_linear ? ColorOf(Between(RowFrom(texels, below, across[v]), RowFrom(above, next, across[v]), up[v]))
+                        : ColorOf(hn::GatherIndex(DU(), texels, hn::Load(d, below)));
+    }
   }
-  /// Texels, and those to the right of them.
-  struct TexelPair {
-    VU left, right;
+
+  /// The first of two texels along an axis, and the weight of the other one.
+  struct Steps {
+    VI texel;
+    VU weight;
   };
-  [[nodiscard]] HWY_INLINE TexelPair PairFrom(VI at) const {
-    const std::uint32_t* const texels = p_.texels.data();
+  [[nodiscard]] static HWY_INLINE Steps StepsAlong(VF at, VI size, GLenum mode, bool is_linear) {
+    const DI d;
+    const VF most = hn::ConvertTo(DF(), size);
+    VF place = hn::Mul(at, most);
+    if (mode == GL_CLAMP_TO_BORDER) place = hn::Min(hn::Max(place, All(-0.5f)), hn::Add(most, All(0.5f)));
+    // The nearest texel of GL_CLAMP is never the border.
+    if (mode == GL_CLAMP && !is_linear) place = hn::Min(place, hn::Sub(most, All(1)));
+    place = is_linear ? hn::Sub(hn::Mul(place, All(256)), All(128)) : hn::Mul(hn::Floor(place), All(256));
+    // The sum has no room for fractions: it is rounded to the whole number that its lowest bits are.
+    const VI steps = hn::Sub(hn::BitCast(d, hn::Add(place, All(12582912))), hn::Set(d, 0x4B400000));
+    const VU weight = hn::BitCast(DU(), hn::And(steps, hn::Set(d, 255)));
+    return {hn::ShiftRight<8>(steps), hn::Or(weight, hn::ShiftLeft<16>(weight))};
+  }
+
+  /// Colors between texels `at` places and those to the right of them.
+  [[nodiscard]] static HWY_INLINE Halves RowFrom(const std::uint32_t* texels, const std::int32_t* at, VU weight) {
 #if HWY_TARGET == HWY_SCALAR
-    return {hn::GatherIndex(DU(), texels, at), hn::GatherIndex(DU(), texels + 1, at)};
+    return Between(HalvesOf(hn::Set(DU(), texels[*at])), HalvesOf(hn::Set(DU(), texels[*at + 1])), weight);
 #else
     const DU d;
-    HWY_ALIGN_MAX std::int32_t place[kMaxLanes];
+    // Pairs of texels of even fragments, then those of odd ones.
     HWY_ALIGN_MAX std::uint32_t pairs[2 * kMaxLanes];
-    hn::Store(at, DI(), place);
-    for (std::size_t k = 0; k < hn::Lanes(d); ++k) std::memcpy(pairs + 2 * k, texels + place[k], 8);
-    const VU low = hn::Load(d, pairs), high = hn::Load(d, pairs + hn::Lanes(d));
-    return {hn::ConcatEven(d, high, low), hn::ConcatOdd(d, high, low)};
+    for (std::size_t k = 0; k < hn::Lanes(d); ++k)
+      std::memcpy(pairs + k / 2 * 2 + k % 2 * hn::Lanes(d), texels + at[k], 8);
+    const VU even = hn::Load(d, pairs), odd = hn::Load(d, pairs + hn::Lanes(d));
+    return Between(HalvesOf(hn::OddEven(hn::DupEven(odd), even)), HalvesOf(hn::OddEven(odd, hn::DupOdd(even))), weight);
 #endif
-  }
-  [[nodiscard]] HWY_INLINE VU Fetch(VI first, VI width, const Texels& x, const Texels& y) const {
-    const VU word = hn::GatherIndex(DU(), p_.texels.data(), PlaceOf(first, width, x, y));
-    const MI is_border = b_.is_1d ? x.is_border : hn::Or(x.is_border, y.is_border);
-    return hn::IfThenElse(hn::RebindMask(DU(), is_border), hn::Set(DU(), border_word_), word);
   }
 
   const BoundTexture& b_;
   const TextureObject& t_;
   const PackedTexture& p_;
-  std::uint32_t border_word_ = 0;
-  bool reads_pairs_;  ///< whether every texel's right neighbour follows it
 };
 
 /// GL_COMBINE of one unit. `textures` holds the colors of all units, for GL_TEXTUREi.
@@ -301,44 +293,31 @@ HWY_NOINLINE inline FragmentColor Combined(const TextureUnitState& unit, int num
   return result;
 }
 
-/// Applies one unit's texture environment to a fragment's color. Colors are from 0 to 1.
-HWY_INLINE FragmentColor Textured(const DrawState& d, const BoundTexture& bound, const FragmentColor& primary,
-                                  const FragmentColor& previous, const FragmentColor* textures) {
-  const TextureUnitState& unit = d.state.texture.units[std::size_t(bound.unit)];
-  if (unit.env_mode == GL_COMBINE) return Combined(unit, bound.unit, primary, previous, textures);
-  const FragmentColor& texel = textures[bound.unit];
-  const GLenum format = bound.base_format;
-  const bool has_color = format != GL_ALPHA, has_alpha = format != GL_LUMINANCE && format != GL_RGB;
-  const VF one = All(1);
-  FragmentColor to = previous;
+/// Applies one unit's texture environment, which is not GL_COMBINE, to a block of fragments. Colors are from 0 to 1.
+HWY_INLINE void ApplyTexture(const TextureUnitState& unit, GLenum format, std::size_t count,
+                             const FragmentColor* texels, FragmentColor* colors) {
+  const int first = format != GL_ALPHA ? 0 : 3, last = format != GL_LUMINANCE && format != GL_RGB ? 3 : 2;
+  const auto each = [&](const auto& apply) HWY_ATTR {
+    for (std::size_t v = 0; v < count; ++v)
+      for (int k = first; k <= last; ++k) colors[v].c[k] = apply(colors[v].c[k], texels[v].c[k], k);
+  };
+  const bool is_intensity = format == GL_INTENSITY;
   switch (unit.env_mode) {
-    case GL_REPLACE:
-      for (int k = 0; k < 3 && has_color; ++k) to.c[k] = texel.c[k];
-      if (has_alpha) to.c[3] = texel.c[3];
-      return to;
+    case GL_REPLACE: return each([](VF, VF texel, int) HWY_ATTR { return texel; });
     case GL_DECAL:
-      // Undefined for other formats: nothing changes.
-      for (int k = 0; k < 3 && (format == GL_RGB || format == GL_RGBA); ++k)
-        to.c[k] = format == GL_RGB ? texel.c[k] : Mixed(previous.c[k], texel.c[k], texel.c[3]);
-      return to;
+      for (std::size_t v = 0; v < count; ++v)
+        for (int k = 0; k < 3 && (format == GL_RGB || format == GL_RGBA); ++k)  // undefined for others: nothing changes
+          colors[v].c[k] = Mixed(colors[v].c[k], texels[v].c[k], texels[v].c[3]);
+      return;
     case GL_BLEND:
-      for (int k = 0; k < 3 && has_color; ++k) to.c[k] = Mixed(previous.c[k], All(unit.env_color[k]), texel.c[k]);
-      if (format == GL_INTENSITY)
-        to.c[3] = Mixed(previous.c[3], All(unit.env_color.a), texel.c[3]);
-      else if (has_alpha)
-        to.c[3] = hn::Mul(previous.c[3], texel.c[3]);
-      return to;
+      return each([&](VF color, VF texel, int k) HWY_ATTR {
+        return k < 3 || is_intensity ? Mixed(color, All(unit.env_color[k]), texel) : hn::Mul(color, texel);
+      });
     case GL_ADD:
-      for (int k = 0; k < 3 && has_color; ++k) to.c[k] = hn::Min(hn::Add(previous.c[k], texel.c[k]), one);
-      if (format == GL_INTENSITY)
-        to.c[3] = hn::Min(hn::Add(previous.c[3], texel.c[3]), one);
-      else if (has_alpha)
-        to.c[3] = hn::Mul(previous.c[3], texel.c[3]);
-      return to;
-    default:  // GL_MODULATE
-      for (int k = 0; k < 3 && has_color; ++k) to.c[k] = hn::Mul(previous.c[k], texel.c[k]);
-      if (has_alpha) to.c[3] = hn::Mul(previous.c[3], texel.c[3]);
-      return to;
+      return each([&](VF color, VF texel, int k) HWY_ATTR {
+        return k < 3 || is_intensity ? hn::Min(hn::Add(color, texel), All(1)) : hn::Mul(color, texel);
+      });
+    default: return each([](VF color, VF texel, int) HWY_ATTR { return hn::Mul(color, texel); });  // GL_MODULATE
   }
 }
 

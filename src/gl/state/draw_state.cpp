@@ -27,30 +27,56 @@ namespace {
   return levels;
 }
 
-/// The levels from the base level on, packed again only if one of them changed.
-[[nodiscard]] std::shared_ptr<const PackedTexture> packed(TextureObject& t, int levels) {
+/// The border's color with the components of the base format, as texels have them: luminance is red.
+[[nodiscard]] std::uint32_t border_of(const TextureObject& t, GLenum format) {
+  std::uint32_t word = 0;
+  for (int k = 0; k < 4; ++k) {
+    const bool is_red = format == GL_INTENSITY || (k < 3 && format != GL_RGB && format != GL_RGBA);
+    word |= std::uint32_t(std::clamp(t.border_color[is_red ? 0 : k], 0.0f, 1.0f) * 255 + 0.5f) << (8 * k);
+  }
+  if (format == GL_RGB || format == GL_LUMINANCE) word |= 0xFF000000;
+  return format == GL_ALPHA ? word & 0xFF000000 : word;
+}
+
+/// The levels from the base level on, packed again only if something changed.
+[[nodiscard]] std::shared_ptr<const PackedTexture> packed(TextureObject& t, int levels, bool is_1d) {
   const auto level = [&](int i) -> const TextureLevel& { return t.levels[std::size_t(t.base_level + i)]; };
-  const auto is_same = [&] {
-    if (!t.packed || t.packed->sources.size() != std::size_t(levels)) return false;
-    for (int i = 0; i < levels; ++i)
-      if (t.packed->sources[std::size_t(i)] != level(i).texels) return false;
-    return true;
-  };
-  if (is_same()) return t.packed;
   auto packed = std::make_shared<PackedTexture>();
-  packed->border = level(0).border;
+  for (int i = 0; i < levels; ++i) packed->sources.push_back(level(i).texels);
+  packed->wrap_s = t.wrap_s;
+  packed->wrap_t = t.wrap_t;
+  packed->border = border_of(t, level(0).base_format);
+  if (const PackedTexture* p = t.packed.get(); p && p->sources == packed->sources && p->wrap_s == packed->wrap_s &&
+                                               p->wrap_t == packed->wrap_t && p->border == packed->border)
+    return t.packed;
+  const int b = level(0).border;
+  constexpr int kOutside = -2;
+  // The texel that is seen at texel i of an axis, which may be outside.
+  const auto seen = [&](int i, int size, GLenum mode) {
+    if (mode == GL_REPEAT) return (i + size) % size;
+    const bool sees_border = mode == GL_CLAMP || mode == GL_CLAMP_TO_BORDER;
+    const int inside = std::clamp(i, 0, size - 1);
+    return !sees_border || i == inside ? inside : b != 0 ? i : kOutside;
+  };
   for (int i = 0; i < levels; ++i) {
     const TextureLevel& from = level(i);
-    packed->first[i] = std::int32_t(packed->texels.size());
-    packed->width[i] = from.width;
-    packed->height[i] = from.height;
-    const std::ptrdiff_t columns = from.width + 2 * from.border;
-    for (auto row = from.texels->begin(); row != from.texels->end(); row += columns) {
-      packed->texels.insert(packed->texels.end(), row, row + columns);
-      if (from.border == 0) packed->texels.push_back(*row);
+    const int w = packed->width[i] = from.width, h = packed->height[i] = from.height;
+    packed->first[i] = std::int32_t(packed->texels.size()) + w + 3;
+    const int left = seen(-1, w, t.wrap_s), right = seen(w, w, t.wrap_s);
+    for (int y = -1; y <= h; ++y) {
+      const int row = is_1d ? -b : seen(y, h, t.wrap_t);
+      if (row == kOutside) {
+        packed->texels.insert(packed->texels.end(), std::size_t(w + 2), packed->border);
+        continue;
+      }
+      const std::uint32_t* const texels = from.texels->data() + std::ptrdiff_t(row + b) * (w + 2 * b) + b;
+      packed->texels.push_back(left == kOutside ? packed->border : texels[left]);
+      packed->texels.insert(packed->texels.end(), texels, texels + w);
+      packed->texels.push_back(right == kOutside ? packed->border : texels[right]);
     }
-    packed->sources.push_back(from.texels);
   }
+  // Texels of weight 0 are read, too: those around the last row and column.
+  packed->texels.resize(packed->texels.size() + std::size_t(packed->width[0]) + 3);
   t.packed = packed;
   return packed;
 }
@@ -64,7 +90,7 @@ namespace {
   const GLenum min = t.min_filter;
   const GLenum format = t.levels[std::size_t(t.base_level)].base_format;
   return BoundTexture{t,
-                      packed(t, levels),
+                      packed(t, levels, target == 0),
                       format,
                       unit.lod_bias,
                       number,

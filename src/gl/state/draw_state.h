@@ -47,13 +47,16 @@ struct DrawBounds {
   [[nodiscard]] bool is_empty() const { return x1 < x0 || y1 < y0; }
 };
 
-/// The levels that sampling reads, one after another. Without a border, each row ends with its first texel once more:
-/// the texel to the right of any texel follows it.
+/// The levels that sampling reads, one after another. A texel more on each side has what the modes of wrapping see
+/// there.
 struct PackedTexture {
   std::vector<std::uint32_t> texels;
-  std::int32_t first[kTextureLevels], width[kTextureLevels], height[kTextureLevels];  ///< without the border
-  std::int32_t border;
-  std::vector<std::shared_ptr<std::vector<std::uint32_t>>> sources;  ///< texels of the levels that were packed
+  /// The place of texel (0, 0), and sizes without the texels around. A row is width + 2 texels.
+  std::int32_t first[kTextureLevels], width[kTextureLevels], height[kTextureLevels];
+  // What was packed.
+  std::vector<std::shared_ptr<std::vector<std::uint32_t>>> sources;  ///< of the levels
+  GLenum wrap_s, wrap_t;
+  std::uint32_t border;  ///< the border's color as a texel
 };
 
 /// A complete texture of an enabled unit.

@@ -230,10 +230,7 @@ void PrimitiveStream::assemble(bool is_last) {
       // A batch ends after an even number of vertices, so that the winding goes on. The provoking vertex stays last.
       for (int i = 0; i + 2 < n; ++i) {
         const int v = f + i;
-        if (i % 2 == 0)
-          add_triangle(v, v + 1, v + 2, 7, v + 2);
-        else
-          add_triangle(v + 1, v, v + 2, 7, v + 2);
+        add_triangle(v + i % 2, v + 1 - i % 2, v + 2, 7, v + 2);
       }
       break;
     case GL_TRIANGLE_FAN:
