@@ -11,8 +11,8 @@ namespace frontmost::shading {
 
 inline constexpr int batch_capacity = 256;  ///< fragments; all arrays together fit into a second-level cache
 
-inline constexpr int batch_room = batch_capacity + 16;  ///< length of the arrays; a vector may begin at the last
-                                                        ///< fragment
+inline constexpr int batch_room = batch_capacity + 32;  ///< length of the arrays; a vector may begin at the last
+                                                        ///< fragment, and a strip of pixels is written whole
 
 struct alignas(64) Lane {
   float values[batch_room];  ///< no power of two, because lanes a power of two apart would share few sets of the cache
@@ -72,6 +72,7 @@ struct Geometry {
   TexcoordLanes texcoord;  ///< set 0
   Lane3 color;             ///< interpolated vertex colours
   Lane alpha;
+  bool has_texcoord = true, has_color = true;  ///< false: all lanes of `texcoord` are 0, those of `color` and `alpha` 1
 };
 
 /// Material data of each fragment, all linear.

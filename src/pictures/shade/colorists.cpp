@@ -118,16 +118,16 @@ void Lit::add_far(const std::vector<TriangleSetup>& setups, FragmentBatch& batch
   bool is_asked[batch_capacity];
   for (std::size_t k = 0; k < lights.far.size(); ++k) {
     const DirectLight& light = lights.far[k].light;
-    const bool has_shadows = shadows.has_shadows(k);
-    for (int i = 0; i < batch.coverage.count; ++i) {
-      is_asked[i] = glm::dot(g.normal.at(i), light.to_light) > 0;
-      batch.shadow[i] = 1;
-      if (has_shadows && is_asked[i] && comes_through(g, i, light.to_light)) {
+    std::fill_n(batch.shadow.values, batch.coverage.count, 1.0f);
+    if (shadows.has_shadows(k)) {
+      for (int i = 0; i < batch.coverage.count; ++i) {
+        is_asked[i] = glm::dot(g.normal.at(i), light.to_light) > 0;
+        if (!is_asked[i] || !comes_through(g, i, light.to_light)) continue;
         batch.shadow[i] = 0;
         is_asked[i] = false;
       }
+      shadows.find_arriving(k, {setups, is_asked, batch}, isa);
     }
-    if (has_shadows) shadows.find_arriving(k, {setups, is_asked, batch}, isa);
     add_direct_light(light, batch, isa);
   }
 }

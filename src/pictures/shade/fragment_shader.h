@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <functional>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace frontmost::shading {
 /// The triangles that were set up for one tile. An open-addressing table finds them by id.
 class TriangleCache {
  public:
-  TriangleCache() : slots_(slot_count), setups_(capacity) {}
+  TriangleCache() : slots_(slot_count), setups_(capacity + strip) {}
 
   void clear() {
     count_ = 0;
@@ -23,36 +24,37 @@ class TriangleCache {
     std::fill(slots_.begin(), slots_.end(), Slot{});  // after the counter wraps around, old slots would look new
     generation_ = 1;
   }
-  static constexpr int capacity = 512;
-  [[nodiscard]] bool is_full() const { return count_ == capacity; }
+  static constexpr int capacity = 512, strip = 16;
+  /// A cache that is full still takes the triangles of the strip of pixels that has filled it.
+  [[nodiscard]] bool is_full() const { return count_ >= capacity; }
   [[nodiscard]] std::vector<TriangleSetup>& setups() { return setups_; }
 
   struct Found {
     std::uint16_t number;
     bool is_new;  ///< the caller has to set up this triangle
   };
-  /// Returns the number of a triangle, which is added if it is absent. Precondition: the cache is not full.
+  /// Returns the number of a triangle, which is added if it is absent. Precondition: the cache is not full, or became
+  /// so within the current strip.
   Found find_or_add(PrimitiveId id) {
     std::uint32_t slot = id * 0x9E3779B1u >> 21;  // 11 bits: slot_count
     while (slots_[slot].generation == generation_) {
       if (slots_[slot].id == id) return {slots_[slot].number, false};
       slot = (slot + 1) % slot_count;
     }
-    slots_[slot] = {generation_, id, std::uint16_t(count_++)};
+    slots_[slot] = {id, generation_, std::uint16_t(count_++)};
     return {slots_[slot].number, true};
   }
 
  private:
   static constexpr std::uint32_t slot_count = 2048;
   struct Slot {
-    std::uint32_t generation = 0;
     PrimitiveId id = no_primitive;
-    std::uint16_t number = 0;
+    std::uint16_t generation = 0, number = 0;
   };
 
   std::vector<Slot> slots_;
   std::vector<TriangleSetup> setups_;
-  std::uint32_t generation_ = 1;
+  std::uint16_t generation_ = 1;
   int count_ = 0;
 };
 
@@ -108,6 +110,42 @@ class FragmentShader {
         out.screen.y[i] = start.screen.y;
       }
     out.count += count;
+  }
+  /// The greatest number of pixels of a strip.
+  static constexpr int strip = TriangleCache::strip;
+  [[nodiscard]] bool has_room_for_strip() const { return room() >= strip; }
+  /// Adds the pixels of a strip, a part of a row, that show anything. `ids` are their primitives. Precondition:
+  /// has_room_for_strip().
+  void add_strip(const PrimitiveId* ids, int count, const RowStart& start) {
+    Coverage& out = batch_.coverage;
+    std::uint32_t begins = 1, shown = 0;  // bits of the pixels that differ from the one before, and of those not empty
+    for (int k = 1; k < count; ++k) begins |= std::uint32_t(ids[k] != ids[k - 1]) << k;
+    for (int k = 0; k < count; ++k) shown |= std::uint32_t(ids[k] != no_primitive) << k;
+    // Every run of pixels writes its triangle's number to the end of the strip and beyond, and the next run overwrites
+    // it: fixed lengths need no branches.
+    for (std::uint32_t left = begins & shown; left != 0; left &= left - 1) {
+      const int k = std::countr_zero(left);
+      const TriangleCache::Found found = cache_.find_or_add(ids[k]);
+      if (found.is_new) new_triangles_.push_back({ids[k], found.number, {start.screen.x + float(k), start.screen.y}});
+      std::fill_n(out.triangle + out.count + k, strip, found.number);
+    }
+    for (int k = 0; k < strip; ++k) {
+      const int i = out.count + k;
+      out.pixel[i] = start.number + std::uint32_t(k);
+      out.samples[i] = start.samples;
+      out.weight[i] = start.weight;
+      out.screen.x[i] = start.screen.x + float(k);
+      out.screen.y[i] = start.screen.y;
+    }
+    if (shown + 1 == 1u << count) return void(out.count += count);
+    int i = out.count;
+    for (; shown != 0; shown &= shown - 1, ++i) {
+      const int from = out.count + std::countr_zero(shown);
+      out.pixel[i] = out.pixel[from];
+      out.triangle[i] = out.triangle[from];
+      out.screen.x[i] = out.screen.x[from];
+    }
+    out.count = i;
   }
   /// The result for one fragment.
   struct Shaded {

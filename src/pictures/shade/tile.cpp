@@ -46,7 +46,7 @@ bool TileWork::shade(const TileRectangle& tile) {
   std::fill(pixels_.begin(), pixels_.end(), glm::vec4(0));
   // Fragments are added strip by strip, so that a batch lies close together on the surface. This helps rays that are
   // cast together.
-  constexpr int strip = 16;
+  constexpr int strip = FragmentShader::strip;
   const bool is_coarse = rate_ == ShadingRate::each_2x2;
   for (int left = 0; left < tile.width; left += strip) {
     const int right = std::min(left + strip, tile.width);
@@ -119,17 +119,15 @@ void TileWork::add_pixels(const TileRectangle& tile, int y, int left, int right)
   const Row& row = rows_[y];
   if (row.is_empty) return;
   for (int x = left; x < right;) {
-    const auto pixel = std::uint32_t(y * tile.width + x);
-    const glm::ivec2 at(tile.x + x, tile.y + y);
-    if (row.differing[x] != 0) {
-      add_mixed_pixel(tile, x, y);
-      ++x;
-      continue;
+    const int begin = x;
+    while (x < right && row.differing[x] == 0) ++x;
+    if (x > begin) {
+      if (!fragments_.has_room_for_strip()) flush();
+      const glm::vec2 screen = glm::vec2(float(tile.x + begin), float(tile.y + y)) + centre_;
+      fragments_.add_strip(row.first + begin, x - begin,
+                           {std::uint32_t(y * tile.width + begin), screen, all_samples(), 1.0f});
     }
-    const PrimitiveId id = row.first[x];
-    const int begin = x++;
-    while (x < right && row.first[x] == id && row.differing[x] == 0) ++x;
-    if (id != no_primitive) add_row(id, x - begin, {pixel, glm::vec2(at) + centre_, all_samples(), 1.0f});
+    for (; x < right && row.differing[x] != 0; ++x) add_mixed_pixel(tile, x, y);
   }
 }
 

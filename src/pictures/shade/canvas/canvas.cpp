@@ -88,10 +88,9 @@ void BitmapCanvas::write(const TileRectangle& tile, const std::vector<glm::vec4>
 void BitmapCanvas::fill(const TileRectangle& tile, const glm::vec4& value) {
   std::uint8_t pixel[kBytes];
   store_rgba8(value, pixel);
-  for (int y = 0; y < tile.height; ++y) {
-    std::uint8_t* out = row(tile, y);
-    for (int x = 0; x < tile.width; ++x) std::memcpy(out + kBytes * x, pixel, kBytes);
-  }
+  std::uint8_t* const first = row(tile, 0);
+  for (int x = 0; x < tile.width; ++x) std::memcpy(first + kBytes * x, pixel, kBytes);
+  for (int y = 1; y < tile.height; ++y) std::memcpy(row(tile, y), first, std::size_t(kBytes * tile.width));
 }
 
 glm::vec3 EnvironmentCanvas::radiance(int x, int y) const {

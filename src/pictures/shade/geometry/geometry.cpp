@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "base/memory.h"
 #include "base/parallel.h"
@@ -15,6 +16,53 @@ bool all_equal(const PrimitiveId* ids, std::size_t count, PrimitiveId id) {
   PrimitiveId different = 0;
   for (std::size_t i = 0; i < count; ++i) different |= ids[i] ^ id;
   return different == 0;
+}
+
+/// A part of a row of pixels and of the two rows above it.
+struct PixelRows {
+  const PrimitiveId *row, *above, *above2;
+
+  /// Sets flags[k] to 1 if the primitive of pixel k covers three pixels in a row or around a corner, of which this one
+  /// is the last. Looks at the two pixels to the left. The loop has no branches, so that compilers vectorize it.
+  void find_large(int begin, int end, std::uint8_t* flags) const {
+    for (int k = begin; k < end; ++k) {
+      const PrimitiveId id = row[k];
+      const auto is_it = [id](PrimitiveId other) { return std::uint8_t(other == id); };
+      const std::uint8_t left = is_it(row[k - 1]), up = is_it(above[k]);
+      flags[k] = (left & (up | is_it(row[k - 2]))) | (up & is_it(above2[k]));
+    }
+  }
+};
+
+/// Adds the large primitives that end in row `y` of a picture.
+void add_large(const PrimitiveId* ids_of_picture, std::size_t y, int width, BitSet& large) {
+  constexpr int run = 64, word = 8;
+  static const auto nothing = [] {
+    std::array<PrimitiveId, run> ids;
+    ids.fill(no_primitive);
+    return ids;
+  }();
+  std::uint8_t flags[run] = {};
+  for (int begin = 0; begin < width; begin += run) {
+    const int count = std::min(run, width - begin), edge = begin == 0 ? std::min(count, 2) : 0;
+    const PrimitiveId* const ids = ids_of_picture + y * std::size_t(width) + begin;
+    const PixelRows rows{ids, y > 0 ? ids - width : nothing.data(), y > 1 ? ids - 2 * width : nothing.data()};
+    for (int k = 0; k < edge; ++k)  // has no two pixels to the left
+      flags[k] = ids[k] == rows.above[k] && (ids[k] == rows.above2[k] || (k > 0 && ids[k] == ids[k - 1]));
+    rows.find_large(edge, count, flags);
+    // Of adjacent pixels with the same primitive, the last one suffices.
+    for (int k = 0; k + 1 < count; ++k) flags[k] = flags[k] & std::uint8_t(1 - (flags[k + 1] & (ids[k] == ids[k + 1])));
+    std::fill(flags + count, std::end(flags), std::uint8_t(0));
+    for (int first = 0; first < count; first += word) {
+      std::uint64_t left;
+      std::memcpy(&left, flags + first, sizeof left);
+      for (; left != 0; left &= left - 1) {
+        const int byte = std::countr_zero(left) / 8;
+        const PrimitiveId id = ids[first + (std::endian::native == std::endian::little ? byte : word - 1 - byte)];
+        if (id != no_primitive) large.add(id);
+      }
+    }
+  }
 }
 
 /// Stores the affine weights of a triangle. \returns false if a value is not finite.
@@ -95,22 +143,7 @@ BitSet large_primitives(std::size_t primitive_count, std::span<const PrimitiveId
   BitSet large = std::move(memory);
   large.clear(primitive_count);
   parallel_for(execution, ids.size() / std::size_t(width), 16, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y) {
-      const PrimitiveId* row = ids.data() + y * std::size_t(width);
-      const auto is_at = [&](PrimitiveId id, int x, int up) {
-        return x >= 0 && std::size_t(up) <= y && row[x - up * width] == id;
-      };
-      PrimitiveId last = no_primitive;
-      for (int x = 0; x < width; ++x) {
-        const PrimitiveId id = row[x];
-        if (id == no_primitive || id == last) continue;
-        const bool left = is_at(id, x - 1, 0), above = is_at(id, x, 1);
-        if ((left && (above || is_at(id, x - 2, 0))) || (above && is_at(id, x, 2))) {
-          large.add(id);
-          last = id;
-        }
-      }
-    }
+    for (std::size_t y = begin; y < end; ++y) add_large(ids.data(), y, width, large);
   });
   return large;
 }
@@ -271,7 +304,7 @@ void TriangleSource::set_attributes(const Mesh& mesh, TriangleSetup& setup) cons
     for (std::size_t k = 0; k < 3; ++k) setup.color[k] = reflected_part(mesh.colors.values[corners[int(k)]]);
   }
   setup.has_texcoord = {};
-  setup.texcoord[0] = {};
+  setup.texcoord = {};
   for (std::uint32_t set = 0; has_texcoords_ && set <= mesh.further_texcoords.size(); ++set) {
     const Attribute<glm::vec2>* const texcoords = mesh.texcoord_set(set);
     if (!texcoords) continue;

@@ -97,27 +97,25 @@ struct Affine {
   float at_reference = 0, step_x = 0, step_y = 0;
 };
 
+/// The values of a triangle that fragments interpolate stand first, in groups of four numbers: kernels read whole
+/// groups.
 struct TriangleSetup {
-  std::array<Affine, 3> weight;     ///< barycentric weights; their sum at the reference is 1
-  glm::vec2 reference{0};           ///< a screen position on the triangle
-  std::array<glm::vec3, 3> corner;  ///< world axes, relative to the eye
-  std::array<glm::vec3, 3> corner_world;
-  std::array<glm::vec3, 3> normal;  ///< at the corners: world axes, unit, on the viewer's side
-  glm::vec3 plane_normal{0};        ///< unit, towards the viewer
-  bool is_smooth = false;           ///< the corner normals differ from the plane's
-  bool is_backside = false;         ///< by its winding, the triangle shows its back
-  PrimitiveId id = no_primitive;
-  std::uint32_t instance = no_index, mesh = no_index, triangle = no_index;
-  std::uint32_t material = no_index;  ///< number in the scene
-  std::array<glm::vec4, 3> color;
+  std::array<Affine, 3> weight;  ///< barycentric weights; their sum at the reference is 1
+  glm::vec2 reference{0};        ///< a screen position on the triangle
+  bool is_smooth = false;        ///< the corner normals differ from the plane's
+  bool is_backside = false;      ///< by its winding, the triangle shows its back
   bool has_color = false;
+  std::array<glm::vec3, 3> corner;  ///< world axes, relative to the eye
+  glm::vec3 plane_normal{0};        ///< unit, towards the viewer
+  std::array<glm::vec3, 3> normal;  ///< at the corners: world axes, unit, on the viewer's side
+  PrimitiveId id = no_primitive;
+  std::uint32_t instance = no_index, mesh = no_index;
+  std::array<glm::vec4, 3> color;
+  std::array<std::array<glm::vec2, 3>, max_texcoord_sets> texcoord;  ///< by set; zero if it is missing
   std::array<bool, max_texcoord_sets> has_texcoord{};                ///< by set
-  std::array<std::array<glm::vec2, 3>, max_texcoord_sets> texcoord;  ///< zero in the first set if it is missing
-
-  /// Returns the texture coordinates of corner k, or zero if the mesh has no such set.
-  [[nodiscard]] glm::vec2 texcoord_at(std::uint32_t set, std::size_t k) const {
-    return has_texcoord[set] ? texcoord[set][k] : glm::vec2(0);
-  }
+  std::uint32_t triangle = no_index;
+  std::uint32_t material = no_index;  ///< number in the scene
+  std::array<glm::vec3, 3> corner_world;
 };
 
 /// Fills weights, reference, corners, plane normal, and is_backside (for a triangle that was not mirrored). If the

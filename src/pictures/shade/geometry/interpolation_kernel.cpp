@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Interpolates from set-up triangles to fragments, a whole vector at a time. The fragments of a vector may lie on
-// several triangles. So each value of a triangle is first assembled lane by lane, and then the formula is evaluated
-// once:
+// several triangles. So the values of the lanes' triangles are first turned into one vector for each value, four values
+// at a time, and then the formula is evaluated once:
 //
 //   triangles      A A A B B C C C
 //   corner.x       a a a b b c c c
@@ -50,73 +50,101 @@ HWY_INLINE void Store(VF x, VF y, Lane2& lanes, int i) {
   hn::StoreU(y, DF(), &lanes.y[i]);
 }
 
+/// Four numbers of each lane's triangle.
+struct VF4 {
+  VF lanes[4];
+};
+
+#if HWY_TARGET != HWY_SCALAR
+/// Returns blocks of four numbers each, those of every fourth triangle.
+template <class D>
+HWY_INLINE hn::Vec<D> BlocksOf(D d, const float* const* triangles) {
+  if constexpr (hn::MaxLanes(D()) == 4) {
+    return hn::LoadU(d, *triangles);
+  } else {
+    const hn::Half<D> half;
+    return hn::Combine(d, BlocksOf(half, triangles + hn::Lanes(half)), BlocksOf(half, triangles));
+  }
+}
+
+/// Returns the numbers at the given places, one place for each lane.
+HWY_INLINE VF4 Transposed(const float* const* at) {
+  const DF d;
+  const VF a = BlocksOf(d, at), b = BlocksOf(d, at + 1), c = BlocksOf(d, at + 2), e = BlocksOf(d, at + 3);
+  const VF ac = hn::InterleaveLower(d, a, c), be = hn::InterleaveLower(d, b, e);
+  const VF ac2 = hn::InterleaveUpper(d, a, c), be2 = hn::InterleaveUpper(d, b, e);
+  return {{hn::InterleaveLower(d, ac, be), hn::InterleaveUpper(d, ac, be), hn::InterleaveLower(d, ac2, be2),
+           hn::InterleaveUpper(d, ac2, be2)}};
+}
+#endif
+
 /// The triangles of the fragments in a vector.
 class VectorTriangles {
  public:
   VectorTriangles(const std::uint16_t* numbers, const std::vector<TriangleSetup>& setups) {
-    const DU d;
-    const hn::Rebind<std::uint16_t, DU> d16;
-    const VU lanes = hn::PromoteTo(d, hn::LoadU(d16, numbers));
-    for (std::uint64_t left = (std::uint64_t(1) << hn::Lanes(d)) - 1; left != 0; ++count_) {
-      const std::uint16_t number = numbers[hwy::Num0BitsBelowLS1Bit_Nonzero64(left)];
-      const auto is_it = hn::Eq(lanes, hn::Set(d, number));
-      left &= ~BitsOf(d, is_it);
-      masks_[count_] = hn::RebindMask(DF(), is_it);
-      triangles_[count_] = &setups[number];
+    for (std::size_t i = 0; i < kMaxLanes; ++i) {
+      triangles_[i] = &setups[numbers[i]];
+      is_single_ = is_single_ && numbers[i] == numbers[0];
     }
   }
 
-  /// Returns the value get(triangle) of each lane's triangle.
+  /// Returns the four numbers that stand at `get(triangle)` of each lane's triangle.
   template <class Get>
-  [[nodiscard]] HWY_INLINE VF operator()(const Get& get) const {
-    VF value = All(get(*triangles_[0]));
-    for (std::size_t t = 1; t < count_; ++t) value = hn::IfThenElse(masks_[t], All(get(*triangles_[t])), value);
-    return value;
+  [[nodiscard]] HWY_INLINE VF4 four(const Get& get) const {
+    const float* at[kMaxLanes];
+    if (is_single_) {
+      at[0] = get(*triangles_[0]);
+      return {{All(at[0][0]), All(at[0][1]), All(at[0][2]), All(at[0][3])}};
+    }
+#if HWY_TARGET != HWY_SCALAR
+    for (std::size_t i = 0; i < kMaxLanes; ++i) at[i] = get(*triangles_[i]);
+    return Transposed(at);
+#else
+    return {};
+#endif
   }
-  /// Returns the value get(triangle) of each lane's triangle, where the value is a vector of three.
-  template <class Get>
-  [[nodiscard]] HWY_INLINE VF3 three(const Get& get) const {
-    return {(*this)([&](const TriangleSetup& t) { return get(t).x; }),
-            (*this)([&](const TriangleSetup& t) { return get(t).y; }),
-            (*this)([&](const TriangleSetup& t) { return get(t).z; })};
-  }
-  [[nodiscard]] HWY_INLINE bool any_smooth() const {
-    bool any = false;
-    for (std::size_t t = 0; t < count_; ++t) any = any || triangles_[t]->is_smooth;
-    return any;
+  /// Returns the `count` numbers, at most 12, that stand from `get(triangle)` on.
+  template <std::size_t count, class Get>
+  HWY_INLINE void numbers(const Get& get, VF (&out)[count]) const {
+    static_assert(count % 4 == 0);
+    for (std::size_t k = 0; k < count; k += 4) {
+      const VF4 four_of = four([&](const TriangleSetup& t) { return get(t) + k; });
+      for (std::size_t j = 0; j < 4; ++j) out[k + j] = four_of.lanes[j];
+    }
   }
 
  private:
-  std::size_t count_ = 0;
-  MF masks_[kMaxLanes];
   const TriangleSetup* triangles_[kMaxLanes];
+  bool is_single_ = true;
 };
 
 /// The weights that barycentric() of geometry.h returns, for a vector of fragments.
 struct Weights {
   VF3 weight;
   VF divisor;
+  VF3 step_x, step_y;  ///< changes of the weights, before they are divided
+  VU flags;            ///< bytes of truth values, the lowest first: is_smooth, is_backside and has_color
 };
-
-HWY_INLINE VF AffineAt(const VectorTriangles& of, std::size_t k, VF dx, VF dy) {
-  const VF start = of([k](const TriangleSetup& t) { return t.weight[k].at_reference; });
-  const VF step_x = of([k](const TriangleSetup& t) { return t.weight[k].step_x; });
-  const VF step_y = of([k](const TriangleSetup& t) { return t.weight[k].step_y; });
-  return AtLeastZero(hn::Add(hn::Add(start, hn::Mul(dx, step_x)), hn::Mul(dy, step_y)));
-}
 
 HWY_INLINE Weights WeightsAt(const VectorTriangles& of, const Lane2& screen, int i) {
   const DF d;
-  const VF dx = hn::Sub(hn::LoadU(d, &screen.x[i]), of([](const TriangleSetup& t) { return t.reference.x; }));
-  const VF dy = hn::Sub(hn::LoadU(d, &screen.y[i]), of([](const TriangleSetup& t) { return t.reference.y; }));
-  const VF a = AffineAt(of, 0, dx, dy), b = AffineAt(of, 1, dx, dy), c = AffineAt(of, 2, dx, dy);
+  VF t[12];  // the members weight, reference, is_smooth, is_backside and has_color
+  static_assert(offsetof(TriangleSetup, reference) == 9 * sizeof(float));
+  static_assert(offsetof(TriangleSetup, is_smooth) == 11 * sizeof(float));
+  static_assert(offsetof(TriangleSetup, has_color) == offsetof(TriangleSetup, is_smooth) + 2);
+  of.numbers([](const TriangleSetup& s) { return &s.weight[0].at_reference; }, t);
+  const VF dx = hn::Sub(hn::LoadU(d, &screen.x[i]), t[9]), dy = hn::Sub(hn::LoadU(d, &screen.y[i]), t[10]);
+  const auto affine = [&](std::size_t k) HWY_ATTR {
+    return AtLeastZero(hn::Add(hn::Add(t[k], hn::Mul(dx, t[k + 1])), hn::Mul(dy, t[k + 2])));
+  };
+  const VF a = affine(0), b = affine(3), c = affine(6);
   const VF sum = hn::Add(hn::Add(a, b), c);
   const MF is_valid = hn::Gt(sum, All(1e-30f));
   const VF divisor = hn::IfThenElse(is_valid, sum, All(1.0f));
   const VF scale = hn::IfThenElseZero(is_valid, hn::Div(All(1.0f), divisor));
   const VF rest = hn::IfThenZeroElse(is_valid, All(1.0f / 3));
-  const auto weight = [&](VF value) { return hn::Add(hn::Mul(value, scale), rest); };
-  return {{weight(a), weight(b), weight(c)}, divisor};
+  const auto weight = [&](VF value) HWY_ATTR { return hn::Add(hn::Mul(value, scale), rest); };
+  return {{weight(a), weight(b), weight(c)}, divisor, {t[1], t[4], t[7]}, {t[2], t[5], t[8]}, hn::BitCast(DU(), t[11])};
 }
 
 HWY_INLINE VF Between(VF a, VF b, VF c, const VF3& weight) {
@@ -127,12 +155,7 @@ HWY_INLINE VF Between(VF a, VF b, VF c, const VF3& weight) {
 struct VF3Corners {
   VF3 a, b, c;
 };
-template <class Get>
-HWY_INLINE VF3Corners CornersOf(const VectorTriangles& of, const Get& get) {
-  return {of.three([&](const TriangleSetup& t) { return get(t)[0]; }),
-          of.three([&](const TriangleSetup& t) { return get(t)[1]; }),
-          of.three([&](const TriangleSetup& t) { return get(t)[2]; })};
-}
+HWY_INLINE VF3Corners CornersOf(const VF* t) { return {{t[0], t[1], t[2]}, {t[3], t[4], t[5]}, {t[6], t[7], t[8]}}; }
 HWY_INLINE VF3 Between(const VF3Corners& corner, const VF3& weight) {
   return {Between(corner.a.x, corner.b.x, corner.c.x, weight), Between(corner.a.y, corner.b.y, corner.c.y, weight),
           Between(corner.a.z, corner.b.z, corner.c.z, weight)};
@@ -181,28 +204,15 @@ HWY_INLINE VF3 ToEye(const VF3& p) {
 struct Coordinate {
   VF value, dx, dy;
 };
-/// Selects a set of texture coordinates and one of its two axes.
-struct CoordinateKind {
-  std::uint32_t set;
-  float glm::vec2::*axis;
-};
-HWY_INLINE Coordinate CoordinateAt(const VectorTriangles& of, CoordinateKind kind, const Weights& w) {
-  const auto corner = [&](std::size_t k) {
-    // Missing coordinates of the first set are zero, so no test is needed.
-    return of([=](const TriangleSetup& t) {
-      return (kind.set == 0 ? t.texcoord[0][k] : t.texcoord_at(kind.set, k)).*kind.axis;
-    });
-  };
-  const VF a = corner(0), b = corner(1), c = corner(2);
+/// Interpolates a coordinate that has these values at the corners.
+HWY_INLINE Coordinate CoordinateAt(VF a, VF b, VF c, const Weights& w) {
   const VF value = Between(a, b, c, w.weight), scale = hn::Div(All(1.0f), w.divisor);
   const VF from_a = hn::Sub(a, value), from_b = hn::Sub(b, value), from_c = hn::Sub(c, value);
-  const auto change = [&](float Affine::*step) {
-    const VF first = hn::Mul(from_a, of([step](const TriangleSetup& t) { return t.weight[0].*step; }));
-    const VF second = hn::Mul(from_b, of([step](const TriangleSetup& t) { return t.weight[1].*step; }));
-    const VF third = hn::Mul(from_c, of([step](const TriangleSetup& t) { return t.weight[2].*step; }));
+  const auto change = [&](const VF3& step) HWY_ATTR {
+    const VF first = hn::Mul(from_a, step.x), second = hn::Mul(from_b, step.y), third = hn::Mul(from_c, step.z);
     return hn::Mul(hn::Add(hn::Add(first, second), third), scale);
   };
-  return {value, change(&Affine::step_x), change(&Affine::step_y)};
+  return {value, change(w.step_x), change(w.step_y)};
 }
 
 /// The vector of fragments that begins at `i`, and the requested set of texture coordinates.
@@ -219,8 +229,11 @@ HWY_INLINE VF AlongStep(const Coordinate& c, const Lane2& step, int i) {
 }
 
 HWY_INLINE void StoreTexcoords(const VectorTriangles& of, const Weights& w, TexcoordPlace place, TexcoordLanes& out) {
-  const Coordinate u = CoordinateAt(of, {place.set, &glm::vec2::x}, w);
-  const Coordinate v = CoordinateAt(of, {place.set, &glm::vec2::y}, w);
+  VF t[8];  // the coordinates at the corners, and two numbers that follow them
+  static_assert(offsetof(TriangleSetup, texcoord) + sizeof(TriangleSetup::texcoord) + 2 * sizeof(float) <=
+                sizeof(TriangleSetup));
+  of.numbers([&](const TriangleSetup& s) { return &s.texcoord[place.set][0].x; }, t);
+  const Coordinate u = CoordinateAt(t[0], t[2], t[4], w), v = CoordinateAt(t[1], t[3], t[5], w);
   Store(u.value, v.value, out.value, place.i);
   if (const PixelSteps* const steps = place.steps) {
     Store(AlongStep(u, steps->x, place.i), AlongStep(v, steps->x, place.i), out.dx, place.i);
@@ -231,37 +244,39 @@ HWY_INLINE void StoreTexcoords(const VectorTriangles& of, const Weights& w, Texc
   Store(u.dy, v.dy, out.dy, place.i);
 }
 
-/// Stores the interpolated colours. Triangles without colours are exactly white.
-void StoreColors(const VectorTriangles& of, const VF3& weight, Geometry& out, int i) {
-  Lane* lanes[4] = {&out.color.x, &out.color.y, &out.color.z, &out.alpha};
-  const MF has_color = hn::Gt(of([](const TriangleSetup& t) { return float(t.has_color); }), hn::Zero(DF()));
-  for (int k = 0; k < 4; ++k) {
-    const VF a = of([k](const TriangleSetup& t) { return t.color[0][k]; });
-    const VF b = of([k](const TriangleSetup& t) { return t.color[1][k]; });
-    const VF c = of([k](const TriangleSetup& t) { return t.color[2][k]; });
-    hn::StoreU(hn::IfThenElse(has_color, Between(a, b, c, weight), All(1.0f)), DF(), &(*lanes[k])[i]);
-  }
+/// Returns the lanes where one of the bytes `mask` of the flags is set.
+HWY_INLINE MF IsSet(VU flags, std::uint32_t mask) {
+  const DU d;
+  return hn::RebindMask(DF(), hn::Ne(hn::And(flags, hn::Set(d, mask)), hn::Zero(d)));
 }
 
-/// The attributes that at least one triangle of a batch has.
-struct BatchAttributes {
-  bool texcoord = false, color = false;
-};
+/// Stores the interpolated colours. Triangles without colours are exactly white.
+void StoreColors(const VectorTriangles& of, const Weights& w, Geometry& out, int i) {
+  Lane* lanes[4] = {&out.color.x, &out.color.y, &out.color.z, &out.alpha};
+  const MF has_color = IsSet(w.flags, 0xFF0000);
+  VF t[12];
+  of.numbers([](const TriangleSetup& s) { return &s.color[0].x; }, t);
+  for (int k = 0; k < 4; ++k)
+    hn::StoreU(hn::IfThenElse(has_color, Between(t[k], t[k + 4], t[k + 8], w.weight), All(1.0f)), DF(),
+               &(*lanes[k])[i]);
+}
 
-void InterpolateVector(const std::vector<TriangleSetup>& setups, int i, const BatchAttributes& attributes,
-                       FragmentBatch& batch) {
+void InterpolateVector(const std::vector<TriangleSetup>& setups, int i, FragmentBatch& batch) {
   Geometry& out = batch.geometry;
   const VectorTriangles of(batch.coverage.triangle + i, setups);
   const Weights w = WeightsAt(of, batch.coverage.screen, i);
-  const VF3Corners corners = CornersOf(
-      of, [](const TriangleSetup& t) -> const auto& { return t.corner; });
-  const VF3 plane = of.three([](const TriangleSetup& t) { return t.plane_normal; });
+  VF t[12];  // the members corner and plane_normal
+  static_assert(offsetof(TriangleSetup, plane_normal) == offsetof(TriangleSetup, corner) + 9 * sizeof(float));
+  of.numbers([](const TriangleSetup& s) { return &s.corner[0].x; }, t);
+  const VF3Corners corners = CornersOf(t);
+  const VF3 plane{t[9], t[10], t[11]};
   const VF3 position = Between(corners, w.weight);
   VF3 normal = plane, lifted = position;
-  if (of.any_smooth()) {
-    const VF3Corners normals = CornersOf(
-        of, [](const TriangleSetup& t) -> const auto& { return t.normal; });
-    const MF is_smooth = hn::Gt(of([](const TriangleSetup& t) { return float(t.is_smooth); }), hn::Zero(DF()));
+  const MF is_smooth = IsSet(w.flags, 0xFF);
+  if (!hn::AllFalse(DF(), is_smooth)) {
+    VF n[12];  // the member normal, and what follows it
+    of.numbers([](const TriangleSetup& s) { return &s.normal[0].x; }, n);
+    const VF3Corners normals = CornersOf(n);
     normal = Chosen(is_smooth, SmoothNormal(normals, plane, w.weight), plane);
     lifted = Chosen(is_smooth, Lifted(corners, normals, position, w.weight), position);
   }
@@ -270,22 +285,12 @@ void InterpolateVector(const std::vector<TriangleSetup>& setups, int i, const Ba
   Store(normal, out.normal, i);
   Store(lifted, out.smooth_position, i);
   Store(ToEye(position), out.to_viewer, i);
-  if (attributes.texcoord) StoreTexcoords(of, w, {i, 0, batch.coverage.steps}, out.texcoord);
-  if (attributes.color) StoreColors(of, w.weight, out, i);
+  if (out.has_texcoord) StoreTexcoords(of, w, {i, 0, batch.coverage.steps}, out.texcoord);
+  if (out.has_color) StoreColors(of, w, out, i);
 }
 
-BatchAttributes AttributesOf(const Coverage& coverage, const std::vector<TriangleSetup>& setups) {
-  BatchAttributes attributes;
-  for (int i = 0; i < coverage.count; ++i) {
-    const TriangleSetup& t = setups[coverage.triangle[i]];
-    attributes.texcoord = attributes.texcoord || t.has_texcoord[0];
-    attributes.color = attributes.color || t.has_color;
-  }
-  return attributes;
-}
-
-void Fill(std::initializer_list<Lane*> lanes, int count, float value) {
-  for (Lane* lane : lanes) std::fill_n(lane->values, count, value);
+void Fill(std::initializer_list<Lane*> lanes, float value) {
+  for (Lane* lane : lanes) std::fill(std::begin(lane->values), std::end(lane->values), value);
 }
 
 }  // namespace
@@ -293,18 +298,22 @@ void Fill(std::initializer_list<Lane*> lanes, int count, float value) {
 void Interpolate(const ScreenRays& rays, const std::vector<TriangleSetup>& setups, FragmentBatch& batch) {
   const Coverage& coverage = batch.coverage;
   Geometry& out = batch.geometry;
-  const int count = coverage.count;
-  const BatchAttributes attributes = AttributesOf(coverage, setups);
-  for (int i = 0; i < count; i += int(hn::Lanes(DF()))) InterpolateVector(setups, i, attributes, batch);
-  if (!attributes.texcoord)
-    Fill({&out.texcoord.value.x, &out.texcoord.value.y, &out.texcoord.dx.x, &out.texcoord.dx.y, &out.texcoord.dy.x,
-          &out.texcoord.dy.y},
-         count, 0.0f);
-  if (!attributes.color) Fill({&out.color.x, &out.color.y, &out.color.z, &out.alpha}, count, 1.0f);
+  bool has_texcoord = false, has_color = false;
+  for (int i = 0; i < coverage.count; ++i) {  // without branches, which would depend on the data
+    has_texcoord |= setups[coverage.triangle[i]].has_texcoord[0];
+    has_color |= setups[coverage.triangle[i]].has_color;
+  }
+  // Lanes that an earlier batch has filled keep their values.
+  TexcoordLanes& uv = out.texcoord;
+  if (!has_texcoord && out.has_texcoord) Fill({&uv.value.x, &uv.value.y, &uv.dx.x, &uv.dx.y, &uv.dy.x, &uv.dy.y}, 0.0f);
+  if (!has_color && out.has_color) Fill({&out.color.x, &out.color.y, &out.color.z, &out.alpha}, 1.0f);
+  out.has_texcoord = has_texcoord;
+  out.has_color = has_color;
+  for (int i = 0; i < coverage.count; i += int(hn::Lanes(DF()))) InterpolateVector(setups, i, batch);
   if (!rays.is_parallel()) return;
-  Fill({&out.to_viewer.x}, count, float(-rays.forward().x));
-  Fill({&out.to_viewer.y}, count, float(-rays.forward().y));
-  Fill({&out.to_viewer.z}, count, float(-rays.forward().z));
+  Fill({&out.to_viewer.x}, float(-rays.forward().x));
+  Fill({&out.to_viewer.y}, float(-rays.forward().y));
+  Fill({&out.to_viewer.z}, float(-rays.forward().z));
 }
 
 void InterpolateTexcoords(const TexcoordRequest& request, TexcoordLanes& out) {

@@ -94,16 +94,24 @@ class MaterialRun {
  private:
   void fill_factors(int begin, int end) {
     const Material& m = row_.factors;
+    const Geometry& g = batch_.geometry;
     Reflectance& out = batch_.material;
-    for (int i = begin; i < end; ++i) {
-      out.base.set(i, glm::vec3(m.base_color) * batch_.geometry.color.at(i));
-      out.alpha[i] = m.base_color.a * batch_.geometry.alpha[i];
-      out.emissive.set(i, m.emissive);
-      out.metallic[i] = m.metallic;
-      out.roughness[i] = m.roughness;
-      out.occlusion[i] = 1.0f;
-      out.unlit[i] = m.unlit ? 1.0f : 0.0f;
-    }
+    const auto set = [&](Lane& lane, float value) { std::fill(lane.values + begin, lane.values + end, value); };
+    const auto scale = [&](Lane& lane, const Lane& colors, float factor) {
+      if (!g.has_color) return set(lane, factor);
+      for (int i = begin; i < end; ++i) lane[i] = factor * colors[i];
+    };
+    scale(out.base.x, g.color.x, m.base_color.r);
+    scale(out.base.y, g.color.y, m.base_color.g);
+    scale(out.base.z, g.color.z, m.base_color.b);
+    scale(out.alpha, g.alpha, m.base_color.a);
+    set(out.emissive.x, m.emissive.r);
+    set(out.emissive.y, m.emissive.g);
+    set(out.emissive.z, m.emissive.b);
+    set(out.metallic, m.metallic);
+    set(out.roughness, m.roughness);
+    set(out.occlusion, 1.0f);
+    set(out.unlit, m.unlit ? 1.0f : 0.0f);
   }
 
   /// Looks up the textures of the fragments [begin, end). Triangles without texture coordinates use the texel at the
@@ -151,14 +159,10 @@ class MaterialRun {
 
   /// Sets alpha by the material's alpha mode. Fragments without blending are opaque.
   void settle_alpha(int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      float& alpha = batch_.material.alpha[i];
-      switch (row_.factors.alpha) {
-        case Material::Alpha::opaque: alpha = 1.0f; break;
-        case Material::Alpha::mask: alpha = 1.0f; break;  // fragments in holes do not exist
-        case Material::Alpha::blend: alpha = alpha > 0 ? std::min(alpha, 1.0f) : 0.0f; break;  // 0 for NaN
-      }
-    }
+    float* const alpha = batch_.material.alpha.values;
+    if (row_.factors.alpha != Material::Alpha::blend)  // fragments in holes do not exist
+      return std::fill(alpha + begin, alpha + end, 1.0f);
+    for (int i = begin; i < end; ++i) alpha[i] = alpha[i] > 0 ? std::min(alpha[i], 1.0f) : 0.0f;  // 0 for NaN
   }
 
   const MaterialRow& row_;
