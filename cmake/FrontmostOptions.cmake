@@ -15,10 +15,10 @@ endif()
 add_library(frontmost_flags INTERFACE)
 # No fused multiply-add, so that all targets give the same bytes.
 target_compile_options(frontmost_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wshadow -Wnon-virtual-dtor)
-# A sanitizer's checks that are not for every build. Checks of alignments take a quarter of the time of compiling under
-# AddressSanitizer: the preset asan has them in the parts that read input, and ./dev test --all everywhere.
+# Checks of alignments take a quarter of the time of compiling under AddressSanitizer. The preset asan has them in the parts
+# that read input; ./dev test --all and ./dev fuzz have them everywhere.
 set(FRONTMOST_CHECKS "" CACHE STRING "Options of all files, for more checks by a sanitizer")
-set(FRONTMOST_INPUT_CHECKS "" CACHE STRING "The same for the parts files and gl, which read bytes that users bring")
+set(FRONTMOST_INPUT_CHECKS "" CACHE STRING "Options for more checks of the parts files and gl, which read bytes that users bring")
 target_compile_options(frontmost_flags INTERFACE ${FRONTMOST_CHECKS})
 # g++ 12 warns about its own array headers when inlining vectors (GCC bug 105562).
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)

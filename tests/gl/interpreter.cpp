@@ -112,7 +112,7 @@ Colors sampled(const State& s, Range u, Range v, Range change) {
   return c;
 }
 
-/// Table 3.24 of the same.
+/// Combiners: OpenGL 1.5, table 3.24.
 void apply_combiner(const State& s, Colors& c, Colors t) {
   // Components that the texture lacks.
   if (s.image->format == GL_RGB || s.image->format == GL_LUMINANCE) t[3] = 1;
@@ -323,7 +323,7 @@ struct Primitive {
     source = to.sources.try_emplace(key, to.sources.size() + 1).first->second;
   }
 
-  /// Known only where texture coordinates are linear in the window.
+  /// The change is known only where texture coordinates are linear in the window.
   [[nodiscard]] Range changes(const Image& image) const {
     const auto is_one = [&](std::size_t k) { return limits[k].low == limits[k].high; };
     if (!is_whole || !is_one(kW) || !is_one(kQ)) return {0, 1e30};

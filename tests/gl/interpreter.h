@@ -37,7 +37,7 @@ struct Vertex {
 
 struct Level {
   int width, height;
-  std::vector<Texel> texels;  ///< as given to glTexImage2D, rows from the bottom
+  std::vector<Texel> texels;  ///< as given to glTexImage1D or 2D, rows from the bottom
 };
 
 struct Image {

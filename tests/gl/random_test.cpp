@@ -169,7 +169,7 @@ const Part kParts[] = {
 /// Vertices of a primitive: tiny, thin, large, huge, cut by planes, or where ties are. Many creep over the frame.
 std::vector<Vertex> random_vertices(Random& r, const State& s, const CallStream& to, int count) {
   enum Kind { tiny, thin, large, ties, huge, cut, kinds };
-  const bool are_filled = s.polygon_modes == State().polygon_modes;  // the edges of others are not cut
+  const bool are_filled = s.polygon_modes == State().polygon_modes;  // outlined polygons are not cut by planes
   const int kind = count > 100 ? int(tiny) : r.below(are_filled ? kinds : int(huge));
   const bool has_one_w = chance(r, 60), has_one_z = has_one_w && chance(r, 80), has_ids = chance(r, 50);
   const bool are_flush = chance(r, 20);  // texture coordinates, with texels

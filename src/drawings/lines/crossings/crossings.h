@@ -46,14 +46,14 @@ struct CrossedPairs {
 };
 
 /// The segments of all pairs of triangles that each have a corner strictly on either side of the other's plane, by
-/// exact signs. Copies of a triangle give each segment once. Of `features`, the twins and the spread vertices are used.
+/// exact signs, and those of contacts. Copies of a triangle give each segment once. Of `features`, the twins and the spread vertices are used.
 /// O(triangles log triangles + pairs whose boxes touch).
 /// \throws Error limit_exceeded beyond 2^20 segments and 16 a triangle, or 2^27 pairs and 32 a triangle.
 [[nodiscard]] CrossedPairs find_crossed_pairs(const WeldedMesh& mesh, const Features& features,
                                               const Execution& execution);
 
 /// The segments of the pairs, and of those contacts that lie on no feature, so that every line exists once. Sorted by
-/// their ends, each once. O(segments + contacts log contacts).
+/// their ends, each once. O(segments + contacts log(features + contacts)).
 [[nodiscard]] std::vector<Crossing> find_crossings(const Features& features, const CrossedPairs& pairs,
                                                    const Execution& execution);
 

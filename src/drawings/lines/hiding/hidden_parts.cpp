@@ -65,12 +65,16 @@ Interval in_shadow(const Occluder& occluder, const SightedEdge& edge, const Sigh
   return hidden;
 }
 
-/// Whether a constructed end of the edge may lie in a plane of the occluder by the numbers of vertices.
-bool has_constructed_end(const Occluder& occluder, const SightedEdge& edge) {
+/// Whether an end of an edge lies on a side or a vertex of the occluder, by the numbers of vertices.
+bool has_end(const Occluder& occluder, const EndOn& on) {
   const auto& v = occluder.vertices;
   const auto has = [&](std::uint32_t vertex) { return vertex == v[0] || vertex == v[1] || vertex == v[2]; };
-  const auto holds = [&](const EndOn& on) { return has(on[0]) && has(on[1]); };
-  return edge.slack > 0 && (holds(edge.from_on) || holds(edge.to_on));
+  return has(on[0]) && has(on[1]);
+}
+
+/// Whether the edge has a constructed end, and an end on the occluder. The kernel computes the depth of such an end.
+bool has_end_by_numbers(const Occluder& occluder, const SightedEdge& edge) {
+  return edge.slack > 0 && (has_end(occluder, edge.from_on) || has_end(occluder, edge.to_on));
 }
 
 bool is_own(const Occluder& occluder, const SightedEdge& edge) {
@@ -199,7 +203,7 @@ bool hold_against_batch(const EdgeQuestion& question, EdgeSearch& search) {
     const auto i = std::size_t(std::countr_zero(bits));
     const Occluder& occluder = *search.batch.occluders[i];
     Interval interval{found.begin[i], found.end[i]};
-    if ((found.open >> i & 1) || occluder.is_near || is_own(occluder, edge) || has_constructed_end(occluder, edge))
+    if ((found.open >> i & 1) || occluder.is_near || is_own(occluder, edge) || has_end_by_numbers(occluder, edge))
       interval = (question.hides() ? hidden_by : covered_by)(occluder, edge, question.o.sight);
     search.hidden.add(overlap(interval, question.span), occluder.triangle);
   }
@@ -338,11 +342,8 @@ Interval hidden_by(const Occluder& occluder, const SightedEdge& edge, const Sigh
   if (is_own(occluder, edge)) return {};
   const OccluderCorners corners(occluder);
   const FacePlane plane(corners.at[0], corners.at[1], corners.at[2]);
-  const auto is_corner = [&](std::uint32_t vertex) {
-    return corners.has(vertex, 0, 1) || vertex == occluder.vertices[2];
-  };
   const auto depth = [&](const EndOn& on, const glm::dvec3& place) {
-    if (is_corner(on[0]) && is_corner(on[1])) return Signed{};
+    if (has_end(occluder, on)) return Signed{};
     return times(plane.height(place, edge.slack), -occluder.turn);
   };
   const Interval beyond = where_positive(depth(edge.from_on, edge.from), depth(edge.to_on, edge.to), true);

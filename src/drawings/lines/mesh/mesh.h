@@ -157,11 +157,11 @@ struct Star {
   std::uint16_t asked;
 };
 
-/// The edges that are no features, if both vertices have is_paired.
+/// Which edges are plain, that is no features, where both vertices have is_paired.
 struct PlainEdges {
   float least_cosine;  ///< the least cosine between the normals of an edge's two triangles, computed in floats
-  bool has_borders;    ///< whether the two belong to one surface
-  bool has_stated;     ///< whether the lower vertex begins no stated edge
+  bool has_borders;    ///< true: an edge between different surfaces is not plain
+  bool has_stated;     ///< true: an edge is not plain if its lower vertex is that of a stated edge
 };
 
 /// Finds the stars of the vertices from `begin` to `end`. The two triangles of a plain edge also face the same way.

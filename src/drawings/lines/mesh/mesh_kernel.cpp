@@ -203,7 +203,7 @@ void Stars(const SeenMesh& seen, const CornerTable& table, const PlainEdges& pla
     if (at.size() > Star::most) continue;
     StarCorners corners(seen, at);
     if (!corners.Pair()) continue;
-    const bool asks_all = plain.has_stated && seen.mesh.stated.begin_at(v);
+    const bool asks_all = plain.has_stated && seen.mesh.stated.is_lower_end(v);
     const float least = asks_all ? std::numeric_limits<float>::infinity() : plain.least_cosine;
     star = {true, corners.IsSpread(at), corners.Asked(std::uint32_t(v), least)};
     if (plain.has_borders) star.asked |= corners.Borders(std::uint32_t(v), seen.mesh, at);

@@ -40,7 +40,7 @@ class StatedEdges {
     return std::binary_search(ends.begin(), ends.end(), std::max(a, b));
   }
   /// Whether the vertex is the lower one of a sharp edge.
-  [[nodiscard]] bool begin_at(std::size_t vertex) const { return !empty() && !higher_ends_[vertex].empty(); }
+  [[nodiscard]] bool is_lower_end(std::size_t vertex) const { return !empty() && !higher_ends_[vertex].empty(); }
   [[nodiscard]] const std::vector<StatedCircle>& circles() const { return circles_; }
 
  private:

@@ -84,7 +84,7 @@ std::vector<std::uint32_t> partners(const std::vector<LineSegment>& segments, bo
 
 /// Rotates a closed chain so that no arc and no straight line runs across its beginning: to its sharpest corner or,
 /// where all are blunt, to the end of its longest line.
-void begin_at_corner(std::vector<glm::dvec2>& points) {
+void is_lower_end_corner(std::vector<glm::dvec2>& points) {
   constexpr double blunt = 0.866;  // the cosine of 30 degrees
   double least = blunt, longest = 0;
   std::size_t sharpest = points.size(), end_of_longest = 0;
@@ -285,7 +285,7 @@ void straighten(Chain& chain, double tolerance) {
   std::vector<glm::dvec2>& points = chain.points;
   if (points.size() < 3) return;
   if (chain.is_closed) {
-    begin_at_corner(points);
+    is_lower_end_corner(points);
     points.push_back(points.front());
   }
   std::vector<glm::dvec2> kept = {points.front()};

@@ -45,8 +45,7 @@ void OutlineClipper::add(Outline outline) {
   parts_.push_back(part);
 }
 
-inline OutlineClipper::Place OutlineClipper::place(Outline outline, const glm::dvec2& p, const glm::dvec2& q,
-                                                   Line& line) {
+OutlineClipper::Place OutlineClipper::place(Outline outline, const glm::dvec2& p, const glm::dvec2& q, Line& line) {
   const glm::dvec2 way = q - p;
   double least = std::numeric_limits<double>::infinity(), greatest = -least;
   for (const PaintCorner& corner : outline) {
