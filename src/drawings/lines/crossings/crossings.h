@@ -45,9 +45,9 @@ struct CrossedPairs {
   std::vector<ContactSegment> contacts;
 };
 
-/// The segments of all pairs of triangles that each have a corner strictly on either side of the other's plane, by
-/// exact signs, and those of contacts. Copies of a triangle give each segment once. Of `features`, the twins and the spread vertices are used.
-/// O(triangles log triangles + pairs whose boxes touch).
+/// The segments of contacts, and of all pairs of triangles that each have a corner strictly on either side of the
+/// other's plane, by exact signs. Copies of a triangle give each segment once. Of `features`, the twins and the spread
+/// vertices are used. O(triangles log triangles + pairs whose boxes touch).
 /// \throws Error limit_exceeded beyond 2^20 segments and 16 a triangle, or 2^27 pairs and 32 a triangle.
 [[nodiscard]] CrossedPairs find_crossed_pairs(const WeldedMesh& mesh, const Features& features,
                                               const Execution& execution);

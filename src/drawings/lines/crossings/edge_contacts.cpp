@@ -5,7 +5,7 @@
 //
 //        \     |               The edge (o) lies in the plane of a third triangle, and its own two lie on different
 //    -----o----- plane         sides of it. find_crossed_pairs() lists such edges with the triangles in whose planes
-//         |                    they lie. They are decided here, all together, because their neighbours have to be known.
+//         |                    they lie. All are decided here together, because their neighbours have to be known.
 #include <algorithm>
 #include <optional>
 #include <tuple>
