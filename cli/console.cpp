@@ -20,7 +20,6 @@ namespace {
 
 // Work shorter than `patience` shows no progress; a line updated more often than each `interval` only flickers.
 constexpr std::chrono::milliseconds patience{500}, interval{50};
-constexpr std::string_view clear_line = "\r\033[K";
 
 }  // namespace
 
@@ -70,9 +69,7 @@ void Progress::set_prefix(std::string prefix) {
 
 void Progress::clear() {
   const std::lock_guard lock(mutex_);
-  if (shown_) (void)std::fwrite(clear_line.data(), 1, clear_line.size(), stderr);
-  shown_ = false;
-  clear_line_when_interrupted(false);
+  clear_line();
 }
 
 void Progress::show(std::string_view stage, double fraction) {
@@ -80,11 +77,7 @@ void Progress::show(std::string_view stage, double fraction) {
   const Clock::time_point now = Clock::now();
   if (now < next_) return;
   next_ = now + interval;
-  shown_ = true;
-  clear_line_when_interrupted(true);
-  const std::string line =
-      fmt::format("{}{}{} {:3.0f} %", clear_line, prefix_, stage, 100 * std::clamp(fraction, 0.0, 1.0));
-  (void)std::fwrite(line.data(), 1, line.size(), stderr);
+  show_line(fmt::format("{}{} {:3.0f} %", prefix_, stage, 100 * std::clamp(fraction, 0.0, 1.0)));
 }
 
 }  // namespace frontmost::cli

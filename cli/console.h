@@ -50,7 +50,6 @@ class Progress {
 
   using Clock = std::chrono::steady_clock;
   bool enabled_;
-  bool shown_ = false;
   Clock::time_point next_;
   std::string prefix_;
   std::mutex mutex_;

@@ -22,7 +22,7 @@
 namespace frontmost::cli {
 namespace {
 
-std::atomic<bool> writing{false}, line_shown{false}, waiting{false};
+std::atomic<bool> writing{false}, line_shown{false}, line_begun{false}, waiting{false};
 std::atomic<int> caught{0};
 
 /// Text formatted beforehand, because handlers must not format.
@@ -34,17 +34,21 @@ PreparedLine timeout_line, timeout_line_of_ranks;
 
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
+constexpr std::string_view kClear = "\r\033[K";
+
 int status_of(int signal) { return signal == SIGALRM ? exit_could_not : exit_interrupted; }
 
-void put(const char* text, std::size_t length) {
-  const ssize_t written = write(STDERR_FILENO, text, length);
+void put(std::string_view text) {
+  const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
   (void)written;  // errors cannot be handled here
 }
 
 void say(int signal) {
-  if (line_shown) put("\r\033[K", 4);
+  while (line_begun) {  // show_line() runs on another thread, because it blocks the signals of its own
+  }
+  if (line_shown) put(kClear);
   const PreparedLine& line = waiting ? timeout_line_of_ranks : timeout_line;
-  if (signal == SIGALRM) put(line.text, line.length);
+  if (signal == SIGALRM) put({line.text, line.length});
 }
 
 void on_signal(int signal) {
@@ -116,7 +120,22 @@ WaitingForRanks::WaitingForRanks() { waiting = true; }
 
 WaitingForRanks::~WaitingForRanks() { waiting = false; }
 
-void clear_line_when_interrupted(bool shown) { line_shown = shown; }
+void show_line(std::string_view line) {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_BLOCK, &all, &before);
+  line_begun = true;
+  if (!is_interrupted()) {
+    line_shown = true;
+    put(std::string(kClear).append(line));
+  }
+  line_begun = false;
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+void clear_line() {
+  if (line_shown.exchange(false)) put(kClear);
+}
 
 bool is_interrupted() { return caught != 0; }
 

@@ -53,8 +53,11 @@ class WaitingForRanks {
   WaitingForRanks& operator=(const WaitingForRanks&) = delete;
 };
 
-/// Tells whether a line of progress is on the terminal. If so, an interruption clears the line first.
-void clear_line_when_interrupted(bool shown);
+/// Writes a line of progress to the terminal, unless the program is interrupted. An interruption on any thread waits
+/// until the line is whole, and clears it.
+void show_line(std::string_view line);
+/// Clears the line if there is one.
+void clear_line();
 
 [[nodiscard]] bool is_interrupted();
 /// Checks for an interruption. \throws Error cancelled if there was one.

@@ -70,6 +70,7 @@ struct alignas(kAlignment) Block {
   Block* before = nullptr;  ///< the previous block of the slab
   bool is_dropped = false;
 };
+static_assert(sizeof(Block) + kAlignment <= Arena::beside);  // the header, and contents rounded up
 
 /// The header of a slab; a stack of blocks follows it in memory.
 struct alignas(kAlignment) Slab {

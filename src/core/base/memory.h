@@ -64,6 +64,9 @@ class Arena {
       true;
 #endif
 
+  /// At least the room that a Buffer takes beside its contents, in bytes.
+  static constexpr std::size_t beside = 128;
+
   /// Makes room for `bytes`, at most 28 MiB, or no room if there is no memory. Untouched room costs nothing.
   explicit Arena(std::size_t bytes);
   ~Arena();

@@ -38,11 +38,11 @@ HWY_INLINE MI Compared(const TestFunction& pass, VI a, VI b) {
   return result;
 }
 
-/// A source of fragments has a block of vectors of them: live[v] says which fragments of vector v are there, and
-/// depth[v] has their stored depths. It reads and writes planes of the frame at them (Load, Store), and knows the
-/// primitive (Id) and what smooth edges leave of alpha (Covered). Pixels() has colors, if they are not those of
-/// vertices. ColorOfVertex(k) and Varying(k) give functions of v, and Changes(v, k, dx, dy) the changes from pixel to
-/// pixel; Weigh(count, needs_change) is called before. Move(to, from) puts a vector in another one's place.
+/// A source of fragments holds a block of vectors of fragments: live[v] tells which lanes of vector v are fragments,
+/// and depth[v] has their stored depths. It reads and writes planes of the frame at the fragments (Load, Store), and
+/// knows their primitive (Id) and what smooth edges leave of alpha (Covered). Pixels() has colors, if they are not
+/// those of vertices. ColorOfVertex(k) and Varying(k) give functions of v, and Changes(v, k, dx, dy) the changes from
+/// pixel to pixel; Weigh(count, needs_change) is called before. Move(to, from) puts a vector in another one's place.
 class FragmentStage {
  public:
   FragmentStage(const PaintTarget& target, const DrawState& draw) : target_(target), d_(draw), s_(draw.state) {

@@ -60,7 +60,7 @@ HWY_INLINE FragmentColor ColorOf(const Halves& h) {
   return {{of(hn::And(h.even, low)), of(hn::And(h.odd, low)), of(hn::ShiftRight<16>(h.even)),
            of(hn::ShiftRight<16>(h.odd))}};
 }
-/// From 0 to 1 what is from 0 to 255.
+/// Scales a color from 0..255 to 0..1.
 HWY_INLINE FragmentColor Unit(FragmentColor color) {
   for (VF& v : color.c) v = hn::Mul(v, All(1.0f / 255));
   return color;
@@ -162,7 +162,8 @@ class Sampler {
     return color;
   }
 
-  /// Samples one level of each fragment; without `has_levels`, the first one. Colors are from 0 to 255.
+  /// Samples one level of each fragment; without `has_levels`, the first one. Colors are from 0 to 255. With
+  /// `has_levels`, `count` is 1.
   template <bool has_levels>
   HWY_INLINE void SampleLevel(std::size_t count, const VI* level, const VF* s, const VF* t, bool is_linear,
                               FragmentColor* to) const {
@@ -213,7 +214,7 @@ class Sampler {
     return {hn::ShiftRight<8>(steps), hn::Or(weight, hn::ShiftLeft<16>(weight))};
   }
 
-  /// Colors between texels `at` places and those to the right of them.
+  /// Mixes the texel at each place with its right neighbour.
   [[nodiscard]] static HWY_INLINE Halves RowFrom(const std::uint32_t* texels, const std::int32_t* at, VU weight) {
 #if HWY_TARGET == HWY_SCALAR
     return Between(HalvesOf(hn::Set(DU(), texels[*at])), HalvesOf(hn::Set(DU(), texels[*at + 1])), weight);

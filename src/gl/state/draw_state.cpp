@@ -41,14 +41,16 @@ namespace {
 /// The levels from the base level on, packed again only if something changed.
 [[nodiscard]] std::shared_ptr<const PackedTexture> packed(TextureObject& t, int levels, bool is_1d) {
   const auto level = [&](int i) -> const TextureLevel& { return t.levels[std::size_t(t.base_level + i)]; };
+  const std::uint32_t border = border_of(t, level(0).base_format);
+  bool is_same = t.packed && t.packed->sources.size() == std::size_t(levels) && t.packed->wrap_s == t.wrap_s &&
+                 t.packed->wrap_t == t.wrap_t && t.packed->border == border;
+  for (int i = 0; is_same && i < levels; ++i) is_same = t.packed->sources[std::size_t(i)] == level(i).texels;
+  if (is_same) return t.packed;
   auto packed = std::make_shared<PackedTexture>();
   for (int i = 0; i < levels; ++i) packed->sources.push_back(level(i).texels);
   packed->wrap_s = t.wrap_s;
   packed->wrap_t = t.wrap_t;
-  packed->border = border_of(t, level(0).base_format);
-  if (const PackedTexture* p = t.packed.get(); p && p->sources == packed->sources && p->wrap_s == packed->wrap_s &&
-                                               p->wrap_t == packed->wrap_t && p->border == packed->border)
-    return t.packed;
+  packed->border = border;
   const int b = level(0).border;
   constexpr int kOutside = -2;
   // The texel that is seen at texel i of an axis, which may be outside.

@@ -47,14 +47,13 @@ struct DrawBounds {
   [[nodiscard]] bool is_empty() const { return x1 < x0 || y1 < y0; }
 };
 
-/// The levels that sampling reads, one after another. A texel more on each side has what the modes of wrapping see
-/// there.
+/// The levels that sampling reads, one after another. Each has a frame of one texel, filled by the modes of wrapping.
 struct PackedTexture {
   std::vector<std::uint32_t> texels;
-  /// The place of texel (0, 0), and sizes without the texels around. A row is width + 2 texels.
+  /// The place of texel (0, 0), and sizes without the frame. A row is width + 2 texels.
   std::int32_t first[kTextureLevels], width[kTextureLevels], height[kTextureLevels];
-  // What was packed.
-  std::vector<std::shared_ptr<std::vector<std::uint32_t>>> sources;  ///< of the levels
+  // A texture is packed again only if one of these has changed.
+  std::vector<std::shared_ptr<std::vector<std::uint32_t>>> sources;  ///< the texels of each level
   GLenum wrap_s, wrap_t;
   std::uint32_t border;  ///< the border's color as a texel
 };

@@ -27,9 +27,6 @@ namespace {
 // not be placed.
 constexpr std::size_t kBatchesAtOnce = 256, kBatchesAtFirst = 32, kFewBatches = 128;
 
-/// At least the bytes that a Buffer takes beside its contents.
-constexpr std::size_t kBufferHeader = 128;
-
 /// A batch in three parts, by how its triangles are drawn.
 struct DirectBatch {
   TriangleBatch small;
@@ -164,7 +161,7 @@ class DirectFrame {
 
   void place(std::span<const std::uint64_t> chosen) {
     if (const std::size_t made = batches_.size(); made < chosen.size()) {
-      const Arena side_by_side((chosen.size() - made) * (sizeof(BatchColumns) + kBufferHeader));
+      const Arena side_by_side((chosen.size() - made) * (sizeof(BatchColumns) + Arena::beside));
       batches_.resize(chosen.size());
     }
     parallel_for(execution_, chosen.size(), 1, [&](std::size_t begin, std::size_t end) {
