@@ -107,8 +107,9 @@ struct Drawing {
                                  const Execution& execution = {});
 
 /// Draws lines of the same surfaces in one view after another. The drawer keeps shared vertices, adjacency and
-/// intersections, which are the same in every view. Memory: 40 bytes a triangle and 80 a segment of an intersection,
-/// and the room of the first drawing, up to 28 MiB. Not for several threads at once.
+/// intersections, which are the same in every view. Memory: 40 bytes a triangle (48 if there are several objects or
+/// materials) and 80 a segment of an intersection, and the room of the first drawing, up to 28 MiB. Not for several
+/// threads at once.
 class LineDrawer {
  public:
   /// Borrows the surfaces, which must outlive the drawer and not change.
