@@ -115,7 +115,14 @@ TEST(Lines, OfOneViewAfterAnotherAreThoseOfEachAlone) {
     add_triangle(mesh, a, middle, b);
     add_triangle(mesh, a, below, middle);
     add_triangle(mesh, middle, below, b);
-    const Scene scene = scene_of(mesh);
+    // Borders of materials and of objects, and stated edges.
+    mesh.sharp_edges = {{0, 1}, {mesh.triangles[2].y, mesh.triangles[2].z}};
+    Scene scene = scene_of(mesh);
+    scene.materials.resize(2);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      scene.meshes[0].material_ids.push_back(std::uint32_t(t % 3 == 0));
+    scene.instances.push_back(scene.instances[0]);
+    scene.instances[1].world_from_mesh[3] += glm::dvec4(0.3, 0.1, 0, 0);
     const Surfaces surfaces(scene);
     LineDrawer drawer(surfaces);
     Random random(17);
@@ -127,6 +134,8 @@ TEST(Lines, OfOneViewAfterAnotherAreThoseOfEachAlone) {
           .counts_hidden = i % 2 == 0, .silhouettes = i != 4, .intersections = i % 3 != 0, .ripples = i > 2};
       if (i == 5) options.crease_angle = 0.5;
       options.boundaries = i != 6;
+      options.borders = i % 4 != 1;
+      options.creases = i != 7;
       expect_same(draw_lines(surfaces, view, options), drawer.draw(view, options, {.threads = 1 + i % 3}));
     }
     EXPECT_THROW((void)drawer.draw(View(), {}), Error);
