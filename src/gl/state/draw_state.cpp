@@ -42,15 +42,13 @@ namespace {
 [[nodiscard]] std::shared_ptr<const PackedTexture> packed(TextureObject& t, int levels, bool is_1d) {
   const auto level = [&](int i) -> const TextureLevel& { return t.levels[std::size_t(t.base_level + i)]; };
   const std::uint32_t border = border_of(t, level(0).base_format);
-  bool is_same = t.packed && t.packed->sources.size() == std::size_t(levels) && t.packed->wrap_s == t.wrap_s &&
-                 t.packed->wrap_t == t.wrap_t && t.packed->border == border;
+  const std::tuple key(t.wrap_s, t.wrap_t, border);
+  bool is_same = t.packed && t.packed->sources.size() == std::size_t(levels) && t.packed->key == key;
   for (int i = 0; is_same && i < levels; ++i) is_same = t.packed->sources[std::size_t(i)] == level(i).texels;
   if (is_same) return t.packed;
   auto packed = std::make_shared<PackedTexture>();
   for (int i = 0; i < levels; ++i) packed->sources.push_back(level(i).texels);
-  packed->wrap_s = t.wrap_s;
-  packed->wrap_t = t.wrap_t;
-  packed->border = border;
+  packed->key = key;
   const int b = level(0).border;
   constexpr int kOutside = -2;
   // The texel that is seen at texel i of an axis, which may be outside.
@@ -68,13 +66,13 @@ namespace {
     for (int y = -1; y <= h; ++y) {
       const int row = is_1d ? -b : seen(y, h, t.wrap_t);
       if (row == kOutside) {
-        packed->texels.insert(packed->texels.end(), std::size_t(w + 2), packed->border);
+        packed->texels.insert(packed->texels.end(), std::size_t(w + 2), border);
         continue;
       }
       const std::uint32_t* const texels = from.texels->data() + std::ptrdiff_t(row + b) * (w + 2 * b) + b;
-      packed->texels.push_back(left == kOutside ? packed->border : texels[left]);
+      packed->texels.push_back(left == kOutside ? border : texels[left]);
       packed->texels.insert(packed->texels.end(), texels, texels + w);
-      packed->texels.push_back(right == kOutside ? packed->border : texels[right]);
+      packed->texels.push_back(right == kOutside ? border : texels[right]);
     }
   }
   // Texels of weight 0 are read, too: those around the last row and column.

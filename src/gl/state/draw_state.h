@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "frontmost/view.h"
@@ -54,8 +55,7 @@ struct PackedTexture {
   std::int32_t first[kTextureLevels], width[kTextureLevels], height[kTextureLevels];
   // A texture is packed again only if one of these has changed.
   std::vector<std::shared_ptr<std::vector<std::uint32_t>>> sources;  ///< the texels of each level
-  GLenum wrap_s, wrap_t;
-  std::uint32_t border;  ///< the border's color as a texel
+  std::tuple<GLenum, GLenum, std::uint32_t> key;  ///< the modes of wrapping, and the border's color as a texel
 };
 
 /// A complete texture of an enabled unit.
