@@ -161,11 +161,14 @@ bool expect_each_triangle_asked(const Indexed& of, const raycast_detail::Query& 
     for (std::size_t k = 0; k < std::min(all.size(), expected.size()); ++k) {
       EXPECT_EQ(all[k].primitive, expected[k].primitive);
       EXPECT_EQ(all[k].t, expected[k].t);
+      EXPECT_EQ(all[k].is_front, expected[k].is_front);
     }
     EXPECT_EQ(any.empty(), expected.empty());
     EXPECT_EQ(closest.empty(), expected.empty());
     if (!expected.empty() && !closest.empty()) {
       EXPECT_EQ(closest[0].primitive, expected[0].primitive);
+      EXPECT_EQ(closest[0].t, expected[0].t);
+      EXPECT_EQ(closest[0].is_front, expected[0].is_front);
     }
   }
   return !expected.empty();
@@ -186,6 +189,62 @@ TEST_P(EveryKindOfQuery, EqualsEveryTriangleOneByOneOnEveryInstructionSet) {
   if (GetParam() != Kind::tiny && GetParam() != Kind::slivers) {
     EXPECT_GT(met, 20u);
   }
+}
+
+TEST_P(EveryKindOfQuery, TakesTheSameStepsOnEveryInstructionSet) {
+  Random random(60);
+  const Indexed of(scene_of(random_mesh(GetParam(), 3000, 12)));
+  std::vector<raycast_detail::Query> queries(1000);
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const glm::vec3 from = some_point(random, of.surfaces), to = some_point(random, of.surfaces);
+    queries[i] = {from, to, to - from, i % 2 == 0, i % 4 < 2};
+  }
+  for (const raycast_detail::Want want : {raycast_detail::Want::closest, raycast_detail::Want::any}) {
+    std::vector<RayHit> expected(queries.size()), hits(queries.size());
+    const std::uint64_t steps = walk_batch(ray_tree(of.index), queries, want, expected, Isa::scalar);
+    for (const Isa isa : available_isas()) {
+      SCOPED_TRACE(name(isa));
+      EXPECT_EQ(walk_batch(ray_tree(of.index), queries, want, hits, isa), steps);
+      for (std::size_t i = 0; i < hits.size(); ++i) {
+        ASSERT_EQ(hits[i].primitive, expected[i].primitive) << i;
+        ASSERT_EQ(hits[i].t, expected[i].t) << i;
+      }
+    }
+  }
+}
+
+/// One-way segments and cutouts need every hit looked at before it counts.
+TEST(Query, AnyHitEndsAOneWaySegment) {
+  Mesh mesh;
+  for (int i = 0; i < 4000; ++i) {
+    const float z = float(i);
+    add_triangle(mesh, {-1, -1, z}, {1, -1, z}, {0, 1, z});
+  }
+  const Indexed of(scene_of(mesh));
+  const raycast_detail::Query down{{0, 0, 5000}, {0, 0, -1}, {0, 0, -5001}, true, true};
+  RayHit hit;
+  EXPECT_LT(walk_batch(ray_tree(of.index), {&down, 1}, raycast_detail::Want::any, {&hit, 1}, Isa::best), 10u);
+  EXPECT_TRUE(hit);
+  // The segment goes on through the triangles that it meets from behind.
+  const raycast_detail::Query up{{0, 0, -1}, {0, 0, 5000}, {0, 0, 5001}, true, true};
+  walk_batch(ray_tree(of.index), {&up, 1}, raycast_detail::Want::any, {&hit, 1}, Isa::best);
+  EXPECT_FALSE(hit);
+}
+
+/// The area of every box is zero, and the areas' heuristic cuts off one leaf after the other.
+TEST(Query, LeavesAtShrinkingDistancesMakeNoDeepTree) {
+  Mesh mesh;
+  std::vector<float> places;
+  for (float x = -1; x < -0x1p-110f; x *= 0.93f) {
+    places.push_back(x);
+    for (int i = 1; i <= 8; ++i)
+      add_triangle(mesh, {x, 0, 0}, {x * (1 + 0x1p-12f * float(i)), 0, 0}, {x, 0x1p-149f, 0});
+  }
+  const Indexed of(scene_of(mesh));
+  EXPECT_GT(places.size(), 1000u);
+  EXPECT_LT(ray_tree(of.index).depth, 80u);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    EXPECT_EQ(closest_hit(of.index, Ray{{places[i], 0, 1}, {0, 0, -1}}).primitive, 8 * i) << i;
 }
 
 /// Products of coordinates overflow at one scale and underflow at another.

@@ -202,6 +202,9 @@ constexpr int kBins = 16;
 constexpr std::size_t kPieceLeaves = 4096;
 /// Fewer leaves than this are halved in place: their order already is a good one, and bins cost more than they save.
 constexpr std::size_t kBinFrom = 4;
+/// Ranges below so many forks are halved in place, too. Building is recursive, and coordinates that shrink
+/// geometrically would make a branch of thousands of forks.
+constexpr std::uint32_t kBinDepth = 64;
 
 struct BoxRange {
   std::size_t begin = 0, end = 0;
@@ -290,12 +293,12 @@ class PieceBuilder {
   void build(std::size_t begin, std::size_t end) {
     piece_.range = range_of(begin, end);
     forks_.reserve(2 * piece_.range.size());
-    piece_.root = make_node(make_fork(piece_.range), 0);
+    piece_.root = make_node(make_fork(piece_.range, 0), 0);
   }
 
  private:
-  /// A node of the binary tree. cost[i] is the least cost of its subtree as at most i + 1 children of one node; left[i]
-  /// of them are then on the left, or 0 if it is best as a single child.
+  /// A node of the binary tree. cost[i] is the least cost of its subtree as at most i + 1 children of one node;
+  /// left_count[i] of them are then on the left, or 0 if it is best as a single child.
   struct Fork {
     Box box;
     std::uint32_t left, right;  ///< forks; or a leaf, and no_index
@@ -305,12 +308,12 @@ class PieceBuilder {
     [[nodiscard]] bool is_leaf() const { return right == no_index; }
   };
 
-  std::uint32_t make_fork(const BoxRange& range) {
+  std::uint32_t make_fork(const BoxRange& range, std::uint32_t depth) {
     Fork fork{range.box, boxes_[range.begin].leaf, no_index, {}, {}};
     if (range.size() > 1) {
-      const auto [left, right] = split(range);
-      fork.left = make_fork(left);
-      fork.right = make_fork(right);
+      const auto [left, right] = split(range, depth);
+      fork.left = make_fork(left, depth + 1);
+      fork.right = make_fork(right, depth + 1);
       set_costs(fork);
     }
     forks_.push_back(fork);
@@ -366,8 +369,8 @@ class PieceBuilder {
     return range;
   }
 
-  std::pair<BoxRange, BoxRange> split(const BoxRange& range) {
-    if (range.size() >= kBinFrom) {
+  std::pair<BoxRange, BoxRange> split(const BoxRange& range, std::uint32_t depth) {
+    if (range.size() >= kBinFrom && depth < kBinDepth) {
       const std::pair<BoxRange, BoxRange> halves = split_by_area(range);
       if (halves.first.size() > 0) return halves;
     }

@@ -23,7 +23,8 @@
 
 namespace frontmost {
 
-/// Boxes or triangles side by side. With sixteen, single rays took 1.6 times as long on AVX2, and views as long.
+/// Boxes or triangles side by side. On AVX2, single rays are 1.6 times and views 0.9 to 1.45 times as fast as with
+/// sixteen. AVX-512 was not measured.
 inline constexpr std::size_t kRayLanes = 8;
 
 /// A child is the index of a leaf, with this bit set, or the index of a node.

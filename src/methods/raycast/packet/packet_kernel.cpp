@@ -22,6 +22,7 @@
 #include "base/highway-inl.h"
 #include "base/isa.h"
 // This header must come after Highway's, so it is included in a separate block.
+#include "base/compactor-inl.h"
 #include "base/lanes-inl.h"
 #include "base/wasm_lanes-inl.h"
 #include "raycast/query/ray_axis-inl.h"
@@ -30,6 +31,22 @@ HWY_BEFORE_NAMESPACE();
 namespace frontmost::raycast_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+
+using frontmost::HWY_NAMESPACE::Compactor;
+
+/// How many of `count` are greater than number i, or equal and before it. Bits of floats from 0 on are ordered as the
+/// floats are, even if they overflow to NaN.
+HWY_INLINE std::size_t RankOf(const std::int32_t* at, std::size_t count, std::size_t i) {
+  const QI d;
+  const auto own = hn::Set(d, at[i]);
+  std::size_t rank = 0;
+  for (std::size_t first = 0; first < count; first += kQueryLanes) {
+    const auto others = hn::Load(d, at + first);
+    const auto used = hn::FirstN(d, count - first), before = hn::FirstN(d, i > first ? i - first : 0);
+    rank += hn::CountTrue(d, hn::And(used, hn::Or(hn::Gt(others, own), hn::And(before, hn::Eq(others, own)))));
+  }
+  return rank;
+}
 
 // Finds the pyramid of a packet's rays, leaves out boxes and triangles that lie beside it, and prepares the other
 // triangles for tests against rays.

@@ -57,8 +57,7 @@ class LightPacket {
         is_one_way_(light.is_one_way),
         axes_(light.to_light),
         stack_(tree.stack_size() + kRayLanes) {
-    const glm::vec3 far = glm::max(glm::abs(tree.bounds.low), glm::abs(tree.bounds.high));
-    tree_size_ = std::max({far.x, far.y, far.z});
+    tree_size_ = SizeOf(tree.reach);
   }
 
   /// Stores whether each point is lit. \returns how often exact arithmetic decided about a ray within the triangle's

@@ -149,19 +149,22 @@ class QueryWalk {
     return true;
   }
 
-  /// Visits a leaf. \returns true if the walk has ended, as any hit was wanted.
+  /// Visits a leaf. If any hit is wanted, the leaf's triangles are decided at once, because the walk may end with them.
+  /// \returns true if the walk has ended.
   HWY_INLINE bool MeetLeaf(const RayLeaf& leaf) {
     for (std::size_t first = 0; first < kRayLanes; first += kQueryLanes) {
       const RayAxis::Edges edges = axis_.EdgesOf(leaf, first);
       const std::uint32_t possible = RayAxis::MayPass(edges);
       if (possible != 0 && Note(leaf, first, possible, edges)) return true;
     }
-    return false;
+    if (want_ != Want::any || noted_ == 0) return false;
+    Settle();
+    return bool(best_);
   }
 
-  /// Decides the noted triangles.
+  /// Decides the noted triangles; if any hit is wanted, up to the first one that is met.
   void Settle() {
-    for (; noted_ != 0; --noted_) {
+    for (; noted_ != 0 && !(want_ == Want::any && best_); --noted_) {
       const Noted& note = notes_[noted_ - 1];
       if (want_ == Want::closest && note.from > axis_.place_of(end_)) continue;
       const std::array<glm::vec3, 3> corners = note.leaf->corners_of(note.lane);
@@ -183,8 +186,9 @@ class QueryWalk {
       constexpr float all = std::numeric_limits<float>::infinity();
       return {0, all, -all, near, far, d == 0};
     }
-    // The roundings of the inverse, of two products and of two sums are less than 6 half units in the last place.
-    const float slack = 0x1p-20f * size * std::abs(inverse) + 0x1p-140f;
+    // Roundings of the inverse, of a segment's direction, of two products and of two sums are at most 9 half units in
+    // the last place of size * inverse, and 15 if the inverse is subnormal. The slack is 16.
+    const float slack = size * std::abs(inverse) * 0x1p-20f + 0x1p-140f;
     return {inverse, o * inverse + slack, o * inverse - slack, near, far, false};
   }
 
@@ -207,8 +211,7 @@ class QueryWalk {
     const QF d;
     const Passes p = axis_.Pass(edges);
     // Triangles before the start or beyond the end are missed.
-    const QM outside =
-        hn::Or(hn::Lt(p.to, hn::Zero(d)), hn::Gt(p.from, hn::Set(d, axis_.place_of(end_) * (1 + 0x1p-20f))));
+    const QM outside = hn::Or(hn::Lt(p.to, hn::Zero(d)), hn::Gt(p.from, hn::Set(d, LastPlace())));
     possible &= ~QueryBits(outside);
     if (possible == 0) return false;
     const QM between = hn::And(hn::Gt(p.from, hn::Zero(d)), hn::Lt(p.to, hn::Set(d, last_place_)));
@@ -224,7 +227,8 @@ class QueryWalk {
     hn::Store(p.to, d, to);
     for (; possible != 0; possible &= possible - 1) {
       const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero32(possible);
-      if (leaf.id[first + lane] == no_primitive) continue;
+      // The end may have come nearer since. Vectors of every length then note the same triangles.
+      if (leaf.id[first + lane] == no_primitive || from[lane] > LastPlace()) continue;
       const bool is_certain = certain >> lane & 1;
       // The ray ends where it certainly meets a triangle: triangles that begin beyond are not the closest.
       if (want_ == Want::closest && is_certain && is_whole)
@@ -235,6 +239,9 @@ class QueryWalk {
     }
     return false;
   }
+
+  /// Triangles that begin beyond this place are not met before the end.
+  [[nodiscard]] HWY_INLINE float LastPlace() const { return axis_.place_of(end_) * (1 + 0x1p-20f); }
 
   void Keep(const RayHit& hit) {
     if (want_ == Want::all) all_->push_back(hit);

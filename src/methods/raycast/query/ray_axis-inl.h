@@ -17,7 +17,6 @@
 
 #include <cmath>
 
-#include "base/compactor-inl.h"
 #include "base/highway-inl.h"
 #include "base/lanes-inl.h"
 #include "raycast/query/queries.h"
@@ -26,8 +25,6 @@ HWY_BEFORE_NAMESPACE();
 namespace frontmost::raycast_detail {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-using frontmost::HWY_NAMESPACE::Compactor;
 
 using QF = hn::CappedTag<float, kRayLanes>;
 using QI = hn::RebindToSigned<QF>;
@@ -43,22 +40,9 @@ HWY_INLINE std::uint32_t QueryBits(QM mask) { return std::uint32_t(frontmost::HW
 HWY_INLINE QV Least(const QV (&x)[3]) { return hn::Min(hn::Min(x[0], x[1]), x[2]); }
 HWY_INLINE QV Most(const QV (&x)[3]) { return hn::Max(hn::Max(x[0], x[1]), x[2]); }
 
-/// How many of `count` are greater than number i, or equal and before it. Bits of floats from 0 on are ordered as the
-/// floats are, even if they overflow to NaN.
-HWY_INLINE std::size_t RankOf(const std::int32_t* at, std::size_t count, std::size_t i) {
-  const QI d;
-  const auto own = hn::Set(d, at[i]);
-  std::size_t rank = 0;
-  for (std::size_t first = 0; first < count; first += kQueryLanes) {
-    const auto others = hn::Load(d, at + first);
-    const auto used = hn::FirstN(d, count - first), before = hn::FirstN(d, i > first ? i - first : 0);
-    rank += hn::CountTrue(d, hn::And(used, hn::Or(hn::Gt(others, own), hn::And(before, hn::Eq(others, own)))));
-  }
-  return rank;
-}
-
-/// The triangles that a ray's line certainly passes through (`inside`); `front` has a bit for those of them that it
-/// passes from the front. The line meets a triangle between the places `from` and `to`, if at all.
+/// The triangles that a ray's line certainly passes through (`inside`). `front` has a bit for each triangle that the
+/// line passes from the front, and is meaningful only where `inside` is true. The line meets a triangle between the
+/// places `from` and `to`, if at all.
 struct Passes {
   std::uint32_t front;
   QM inside;
@@ -69,7 +53,6 @@ struct Passes {
 /// along.
 class RayAxis {
  public:
-  RayAxis() = default;
   explicit RayAxis(const Query& query) {
     const float along[3] = {query.direction.x, query.direction.y, query.direction.z};
     const float origin[3] = {query.origin.x, query.origin.y, query.origin.z};
@@ -158,10 +141,10 @@ class RayAxis {
   }
   static HWY_INLINE QV Size(const QV (&x)[3]) { return hn::Max(hn::Max(hn::Abs(x[0]), hn::Abs(x[1])), hn::Abs(x[2])); }
 
-  float origin_u_ = 0, origin_v_ = 0, origin_z_ = 0;
-  int z_ = 2, u_ = 0, v_ = 1;  ///< the axis that the ray moves most along, and the other two
-  float sign_ = 1, length_ = 1;
-  float slope_u_ = 0, slope_v_ = 0;
+  float origin_u_, origin_v_, origin_z_;
+  int z_, u_, v_;  ///< the axis that the ray moves most along, and the other two
+  float sign_, length_;
+  float slope_u_, slope_v_;
 };
 
 }  // namespace HWY_NAMESPACE
