@@ -6,6 +6,7 @@
 // except for primitives that a plane cuts: some 1/256 pixel around their edges may be covered or not.
 #pragma once
 
+#define GL_GLEXT_PROTOTYPES
 #include <GL/gl.h>
 #include <GL/glext.h>
 
