@@ -100,6 +100,7 @@ class QueryWalk {
     bool is_certain, is_front;
   };
   static constexpr std::size_t kMostNoted = 16;
+  static_assert(kMostNoted >= kRayLanes);  // a walk for any hit decides leaf by leaf, so Settle() always leaves room
 
   /// Makes the nearest child that the ray enters the next one, and pushes the others, the nearest last. \returns false
   /// if the ray enters none.
