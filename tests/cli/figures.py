@@ -212,7 +212,8 @@ def differing(a, b, pixels, bound):
 
 
 def browser():
-    return shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    names = ["chromium-headless-shell", "chromium", "google-chrome"]
+    return next((found for found in map(shutil.which, names) if found), None)
 
 
 def screenshot(folder, width, height):

@@ -135,7 +135,7 @@ def check_clicks(told):
 
 
 def main():
-    browser = shutil.which("chromium")
+    browser = shutil.which("chromium-headless-shell") or shutil.which("chromium")
     if not browser:
         print("skipped: there is no chromium")
         sys.exit(77)

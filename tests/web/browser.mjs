@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Debian's Chromium through playwright-core, without a network except the page's own server.
+// Debian's Chromium without windows, through playwright-core, without a network except the page's own server.
 import { createRequire } from "node:module";
 import { serve } from "../../scripts/page/server.mjs";
 
 export async function openBrowser(folder, more = ["--disable-gpu", "--enable-unsafe-swiftshader"]) {
   const { chromium } = createRequire(new URL("../../web/page/package.json", import.meta.url))("playwright-core");
   const { server, address } = await serve(folder);
-  const browser = await chromium.launch({ executablePath: "/usr/bin/chromium", headless: true,
+  const browser = await chromium.launch({ executablePath: "/usr/bin/chromium-headless-shell", headless: true,
     args: ["--no-sandbox", ...more, "--host-resolver-rules=MAP plain.test 127.0.0.1", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"] });
   return { browser, address, async close() {
     await browser.close();

@@ -10,6 +10,6 @@ skip() {
 }
 [ -e "$needed" ] || skip "$needed is not built"
 command -v node >/dev/null || skip "there is no node"
-case $script in */page.mjs | */touch.mjs | */access.mjs) [ -x /usr/bin/chromium ] || skip "there is no /usr/bin/chromium" ;; esac
+case $script in */page.mjs | */touch.mjs | */access.mjs) [ -x /usr/bin/chromium-headless-shell ] || skip "there is no /usr/bin/chromium-headless-shell" ;; esac
 shift
 exec node "$@"
