@@ -255,7 +255,7 @@ Drawing far_crowd(int count) {
 TEST(StrokesOnce, ACrowdFarFromTheRestIsNoMatter) {
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
-  const Drawing drawing = far_crowd(under_sanitizer ? 4000 : 50000);
+  const Drawing drawing = far_crowd(under_sanitizer ? 4000 : 20000);
   const Strokes all = chain_strokes(surfaces, drawing, {.by_instance = false, .nearest_first = true});
   double length = 0;
   for (const Stroke& stroke : all.strokes) length += length_of(all, stroke);
@@ -265,10 +265,10 @@ TEST(StrokesOnce, ACrowdFarFromTheRestIsNoMatter) {
 TEST(StrokesOnce, NorIsItWhereMoreCountsAsOneLine) {
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
-  const Drawing drawing = far_crowd(under_sanitizer ? 4000 : 50000);
+  const Drawing drawing = far_crowd(under_sanitizer ? 4000 : 20000);
   for (const double apart : {0.09, 0.12, 1.0}) {
     // All lines are 0.1 long. If `apart` is greater, each is just a point unless it meets another line, as many of
-    // 50000 do.
+    // 20000 do.
     const bool is_empty = chain_strokes(surfaces, drawing, {.by_instance = false, .apart = apart}).strokes.empty();
     EXPECT_EQ(is_empty, apart == 1.0 || (under_sanitizer && apart > 0.1));
   }
