@@ -20,19 +20,16 @@ const operable = new Set(["button", "link", "radio", "checkbox", "slider", "comb
 const international = /^(Frontmost|English|中文|PNG|SVG|PDF|DXF|[\w.-]+\.(npy|exr|pfm)|D16|D24|F32|Newell, Newell, Sancha|Newell、Newell、Sancha|[A-Z]+|builtin:.*|[\d.]+)$/;
 const chinese = /[\u4e00-\u9fff]/;
 
-async function readyPage(path, lang, more = {}) {
-  const { page, context } = await openPage(browser, { viewport: { width: 1280, height: 900 }, ...more });
+async function makeReady(page, path, lang) {
   await page.goto(`${address}${path}${path.includes("?") ? "&" : "?"}lang=${lang}`);
   if (path.startsWith("index")) await page.waitForFunction(() => /[0-9a-f]{16}/.test(document.querySelector(".state").textContent), undefined, patience);
   await page.waitForFunction(() => [...document.querySelectorAll(".steps output")].every((output) => /\/ [1-9]/.test(output.textContent)), undefined, patience);
   await page.waitForTimeout(500);
-  return { page, context };
 }
 
 /** Checks that every control and picture has a name in the page's language. */
-async function checkNames(page, context, lang, where) {
+async function checkNames({ page, cdp }, lang, where) {
   check(await page.evaluate(() => document.documentElement.lang) === (lang === "zh" ? "zh-Hans" : "en"), `${where}: lang`);
-  const cdp = await context.newCDPSession(page);
   const { nodes } = await cdp.send("Accessibility.getFullAXTree");
   for (const { role, name, ignored, properties = [] } of nodes) {
     if (ignored || !operable.has(role?.value)) continue;
@@ -77,7 +74,7 @@ async function checkTabs(page, where) {
   for (let i = 0; i <= count; ++i) {
     await page.keyboard.press("Tab");
     const at = await page.evaluate(focused);
-    if (!at) break;
+    if (!at || (at.number === 0 && reached.size === count)) break; // after the last one: out of the page, or to the first
     check(at.outlined, `${where}: no outline around ${at.what}`);
     check(at.number >= reached.size - 1, `${where}: out of order: ${at.what}`);
     reached.add(at.number);
@@ -148,7 +145,7 @@ async function becomes(look, before, what) {
  * key. */
 async function checkKeys(page, where) {
   let choosers = 0;
-  page.on("filechooser", () => ++choosers);
+  page.removeAllListeners("filechooser").on("filechooser", () => ++choosers);
   for (const figure of await page.locator(".figure").all()) {
     for (const picture of await figure.locator('[role="application"]').all()) {
       const before = await shown(figure);
@@ -179,24 +176,26 @@ async function checkKeys(page, where) {
 
 try {
   const paths = ["index.html?scene=cubes", "lessons.html"];
-  const { page: contents, context: first } = await openPage(browser);
-  await contents.goto(`${address}lessons.html?lang=en`);
-  paths.push(...await contents.locator(".contents a").evaluateAll((links) => links.map((link) => link.getAttribute("href"))));
-  await first.close();
   // The English page is tested in the light scheme, the Chinese one in the dark one.
-  const kinds = [["en", "light"], ["zh", "dark"]];
+  const kinds = [["en", "light"], ["zh", "dark"]], tabs = {};
+  for (const [lang, colorScheme] of kinds) {
+    const { page, context } = await openPage(browser, { viewport: { width: 1280, height: 900 }, colorScheme });
+    tabs[lang] = { page, cdp: await context.newCDPSession(page) };
+  }
+  await tabs.en.page.goto(`${address}lessons.html?lang=en`);
+  paths.push(...await tabs.en.page.locator(".contents a").evaluateAll((links) => links.map((link) => link.getAttribute("href"))));
   for (const [i, path] of paths.entries()) {
     for (const [lang, colorScheme] of all ? kinds : [kinds[i % 2]]) {
-      const { page, context } = await readyPage(path, lang, { colorScheme });
+      const { page } = tabs[lang];
+      await makeReady(page, path, lang);
       const { faint, count } = await page.evaluate(faintTexts);
       check(faint.length === 0, `${path}, ${lang}, ${colorScheme}: ${faint.join("; ")}`);
       texts += count;
-      await checkNames(page, context, lang, `${path}, ${lang}`);
+      await checkNames(tabs[lang], lang, `${path}, ${lang}`);
       if (lang === "en" || !all) {
         await checkTabs(page, path);
         await checkKeys(page, path);
       }
-      await context.close();
     }
   }
 } finally {

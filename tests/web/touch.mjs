@@ -98,8 +98,8 @@ async function changes(figure, act, what) {
   assert.fail(what);
 }
 
-async function tryLesson(id) {
-  const { page, context, cdp } = await openPhone(`lesson.html?lesson=${id}&lang=en`);
+async function tryLesson({ page, cdp }, id) {
+  await page.goto(`${address}lesson.html?lesson=${id}&lang=en`);
   await page.waitForFunction(() => [...document.querySelectorAll(".steps output")].every((output) => /\/ [1-9]/.test(output.textContent)), undefined, patience);
   await page.waitForTimeout(500);
   const top = () => page.evaluate(() => Math.round(scrollY));
@@ -124,15 +124,13 @@ async function tryLesson(id) {
       if (still) assert.ok(await atRest(figure) === still, `${name}: turned while the page scrolls`);
       ++pictures;
     }
-  await context.close();
 }
 
 try {
   await tryWorkbench();
-  const { page, context } = await openPhone("lessons.html?lang=en");
-  const ids = await page.locator(".contents a").evaluateAll((links) => links.map((link) => new URL(link.href).searchParams.get("lesson")));
-  await context.close();
-  for (const [i, id] of ids.entries()) if (all || i % 2 === 0) await tryLesson(id);
+  const opened = await openPhone("lessons.html?lang=en");
+  const ids = await opened.page.locator(".contents a").evaluateAll((links) => links.map((link) => new URL(link.href).searchParams.get("lesson")));
+  for (const [i, id] of ids.entries()) if (all || i % 2 === 0) await tryLesson(opened, id);
 } finally {
   await close();
 }
