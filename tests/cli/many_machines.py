@@ -34,7 +34,7 @@ def run(folder, command, **variables):
 
 def make_inputs(folder):
     folder.mkdir()
-    views = [{"camera-direction": [1, number / VIEWS, -0.4]} for number in range(VIEWS)]
+    views = [{"camera-direction": [1, number / VIEWS, -0.4], "resolution": [96, 72]} for number in range(VIEWS)]
     batch = {"views": views, "outputs": {"output": "{model}_{view}.pfm", "depth": "{view}.npy"}}
     (folder / "views.json").write_text(json.dumps(batch))
 
