@@ -50,7 +50,8 @@ class Case:
 CASES = {
     "cubes through each other": Case(["builtin:cubes", "--no-shadows"], scales=(0.5, 2), browser=0.001),
     "a ring of three": Case(["builtin:cycle", *FLAT], scales=(0.5, 2)),
-    "ids": Case(["builtin:city", "--shading", "ids"], most=0.002, browser=0.06),
+    "ids": Case(["builtin:cubes", "--shading", "ids"], browser=0.001),
+    "ids of a city": Case(["builtin:city", "--shading", "ids"], most=0.002, browser=0.06),
     "in parallel": Case(["builtin:cubes", "--view", "iso", "--camera-orthographic", "--shading", "normals"]),
     "tiles": Case(["builtin:gallery", *FLAT], TOLERANCE, 0.02, 64, browser=0.06),
     "light and shadow": Case(["builtin:gallery"], TOLERANCE, 0.02, 64),
@@ -63,7 +64,8 @@ CASES = {
     "a teapot of glass": Case(["builtin:teapot", *FLAT, "--opacity", "0.4"], 0, 0.006, browser=0.006),
     "leaves": Case(["leaves.gltf", *FLAT]),
 }
-LONG = {"tiles", "light and shadow", "normals", "ids, neighbours merged", "tiles, neighbours merged", "a teapot of glass"}
+LONG = {"tiles", "light and shadow", "normals", "ids of a city", "ids, neighbours merged", "tiles, neighbours merged",
+        "a teapot of glass"}
 LET_THROUGH = 5  # steps of 8 bits, 2 %: how much of the background viewers may show within a plate
 LET_THROUGH_BETWEEN_COLOURS = 25  # 10 %: the same within scenes of textures and shadows
 SVG = "{http://www.w3.org/2000/svg}"

@@ -29,7 +29,7 @@ TEST(AllModels, AreSeenAlikeByEveryMethod) {
     SCOPED_TRACE(name);
     const Scene scene = load(model(name));
     const Surfaces surfaces(scene);
-    const View view = frame(surfaces, 480, 360);
+    const View view = frame(surfaces, 240, 180);
     const Visible reference = zbuffer(surfaces, view);
     rays.add(check_agreement(surfaces, reference, raycast(surfaces, view)));
     const std::vector<Visible> layer = visible_layers(surfaces, view, 2);
