@@ -15,7 +15,7 @@ namespace frontmost::test {
 namespace {
 
 // More than fit into one tile's storage, also for the small squares.
-const int kCrowd = under_sanitizer ? 12'000 : 100'000;
+const int kCrowd = tries_little ? 12'000 : 100'000;
 
 /// A square of two triangles, `count` times: as it is, and with its vertices in other orders.
 Mesh squares(int count, float size) {
@@ -94,7 +94,7 @@ TEST(Copies, BehindHolesAreSeen) {
 }
 
 TEST(Copies, OfGlassAreRefusedBeforeTheyAreGathered) {
-  if (under_sanitizer) return;
+  if (tries_little) return;
   const Scene scene = glass_scene(squares(kCrowd, 1.5f));
   const Surfaces surfaces(scene);
   const View view = front_view(700, 500);

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "fragment_oracle.h"
+#include "support/effort.h"
 #include "support/flat_picture.h"
 #include "support/random_scene.h"
 
@@ -115,7 +116,7 @@ TEST(Coverage, OfASheetAddsUp) {
 }
 
 TEST(Order, OfTrianglesDoesNotMatter) {
-  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+  for (std::uint64_t seed = 0; seed < seeds(12); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed);
     const Scene scene = scene_of(random_mesh(Kind::soup, 120, seed));

@@ -72,7 +72,7 @@ TEST(LongLists, OfSheetsThatCrossEqualBruteForce) {
 
 // Comparing every pair of 100,000 copies in a pixel would take half an hour. All copies are blue.
 TEST(LongLists, OfAHundredThousandCopiesAreComposited) {
-  const Scene scene = painted(copies_of_a_leaf(under_sanitizer ? 2'000 : 100'000), faint_colors(100));
+  const Scene scene = painted(copies_of_a_leaf(tries_little ? 2'000 : 100'000), faint_colors(100));
   const glm::vec4 middle = pixel_of(flat_picture(Surfaces(scene), front_view(4, 4), {4}), 2, 2);
   EXPECT_NEAR(middle.a, 1, 1e-4);
   EXPECT_NEAR(middle.b, 0.5, 1e-3);

@@ -121,7 +121,7 @@ TEST(Hatch, CopiesOfTrianglesChangeNothingAndCostNothing) {
   Mesh mesh = once.meshes[0];
   const std::vector<glm::uvec3> triangles = mesh.triangles;
   // The copies have all vertex orders, and so both windings.
-  for (int copy = 0; copy < (under_sanitizer ? 12 : 300); ++copy)
+  for (int copy = 0; copy < (tries_little ? 12 : 300); ++copy)
     for (const glm::uvec3& t : triangles)
       mesh.triangles.push_back(copy % 3 == 0   ? t
                                : copy % 3 == 1 ? glm::uvec3(t.y, t.z, t.x)
@@ -138,7 +138,7 @@ TEST(Hatch, CopiesOfTrianglesChangeNothingAndCostNothing) {
   const std::vector<HatchLine> same = hatch(copies, view, options, watch.execution());
   const std::size_t most = asked_once + 2 * copies.primitive_count() / triangles_per_question;
   EXPECT_LT(watch.asked(), most);
-  if (!under_sanitizer) {
+  if (!tries_little) {
     // If the copies were hatched too, hatching would ask more often.
     EXPECT_GT(copies.primitive_count() / triangles.size() * lines.size() / lines_per_question, most);
   }
@@ -188,7 +188,7 @@ Scene ball_scene(int rings) {
 }
 
 TEST(Hatch, EndsOnASphereWhereItIsAsBrightAsThat) {
-  const Scene scene = ball_scene(under_sanitizer ? 24 : 48);
+  const Scene scene = ball_scene(tries_little ? 24 : 48);
   const Surfaces surfaces(scene);
   const View view = view_with_z_up({0, -8, 0}, true);
   const glm::dvec3 light = glm::normalize(glm::dvec3(-1, -1, 1));
@@ -205,7 +205,7 @@ TEST(Hatch, EndsOnASphereWhereItIsAsBrightAsThat) {
     }
   EXPECT_GT(within, 15u);
   // Flat shading would be off by half a facet, 2 degrees, or 0.03.
-  EXPECT_LT(worst, under_sanitizer ? 0.04 : 0.01);
+  EXPECT_LT(worst, tries_little ? 0.04 : 0.01);
 }
 
 class EveryKindHatched : public testing::TestWithParam<Kind> {};

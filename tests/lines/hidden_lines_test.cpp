@@ -47,7 +47,7 @@ class EveryKind : public testing::TestWithParam<Kind> {};
 
 TEST_P(EveryKind, IsHiddenWhereATriangleIsBefore) {
   Checked all;
-  for (std::uint64_t seed = 0; seed < (under_sanitizer ? 2u : 8u); ++seed) {
+  for (std::uint64_t seed = 0; seed < (tries_little ? 2u : 8u); ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed + 100);
     // All sheets pass through each other: hundreds of thousands of segments.
@@ -164,7 +164,7 @@ TEST(Lines, PartsOfManyTrianglesAreOneGrid) {
     expect_same(drawing, draw_lines(surfaces, view, options, {.threads = 4}));
     const PointOracle oracle(surfaces, view);
     std::size_t hidden = 0;
-    for (std::size_t i = 0; i < drawing.parts.size(); i += under_sanitizer ? 3000 : 300) {
+    for (std::size_t i = 0; i < drawing.parts.size(); i += tries_little ? 3000 : 300) {
       const DrawnPart& part = drawing.parts[i];
       const DrawnEdge& edge = drawing.edges[part.edge];
       const PointOracle::Answer answer =
@@ -173,7 +173,7 @@ TEST(Lines, PartsOfManyTrianglesAreOneGrid) {
       EXPECT_EQ(part.hidden_by, counts ? answer.hidden_by : std::min(answer.hidden_by, 1u));
       hidden += part.hidden_by > 0;
     }
-    EXPECT_GT(hidden, under_sanitizer ? 5u : 50u);
+    EXPECT_GT(hidden, tries_little ? 5u : 50u);
   }
 }
 

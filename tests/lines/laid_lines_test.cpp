@@ -128,7 +128,7 @@ TEST(LaidLines, AllThatLieOnALineAreFound) {
   for (std::size_t kind = 0; kind < std::size(kinds); ++kind)
     for (const double apart : {0.002, 0.13, 1.0}) {
       SCOPED_TRACE(int(kind) * 1000 + int(apart * 100));
-      found += expect_all_found(lines_of(kinds[kind], under_sanitizer ? 600 : 2000), apart);
+      found += expect_all_found(lines_of(kinds[kind], tries_little ? 600 : 2000), apart);
     }
   EXPECT_GT(found, 10000u);
 }

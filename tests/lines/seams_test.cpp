@@ -338,7 +338,7 @@ TEST(Seams, ThatWouldBeTheSquareOfTheirPagesStayOpen) {
 
 /// A strip of fillers along one line.
 TEST(Seams, AskOftenWhetherToStop) {
-  const std::uint32_t count = under_sanitizer ? 40000 : 200000;
+  const std::uint32_t count = tries_little ? 40000 : 200000;
   Buffer<glm::vec3> places(count + 2);
   WeldedMesh mesh;
   mesh.triangles = Buffer<glm::uvec3>(count);

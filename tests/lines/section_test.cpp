@@ -14,6 +14,7 @@
 #include "frontmost/files.h"
 #include "frontmost/lines.h"
 #include "scene/shapes.h"
+#include "support/effort.h"
 #include "support/models.h"
 #include "support/random_scene.h"
 
@@ -244,7 +245,7 @@ TEST(Section, OutlinesThatCrossThemselvesAreClosedAllTheSame) {
 }
 
 TEST(Section, RandomConvexSolidsBesideTheHullOfTheirEdges) {
-  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+  for (std::uint64_t seed = 0; seed < seeds(200); ++seed) {
     // A stretched, rotated and moved ball of few sides.
     Random random(seed);
     Mesh solid = sphere(2 + random.below(6));
@@ -282,7 +283,7 @@ TEST(Section, RandomConvexSolidsBesideTheHullOfTheirEdges) {
 }
 
 TEST(Section, CubesThatTouchInAnyPatternHaveAsManySquares) {
-  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+  for (std::uint64_t seed = 0; seed < seeds(100); ++seed) {
     // Cubes touch at vertices, edges and faces; common faces occur in both directions.
     constexpr int side = 4;
     Random random(seed);

@@ -255,7 +255,7 @@ Drawing far_crowd(int count) {
 TEST(StrokesOnce, ACrowdFarFromTheRestIsNoMatter) {
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
-  const Drawing drawing = far_crowd(under_sanitizer ? 4000 : 20000);
+  const Drawing drawing = far_crowd(tries_little ? 4000 : 20000);
   const Strokes all = chain_strokes(surfaces, drawing, {.by_instance = false, .nearest_first = true});
   double length = 0;
   for (const Stroke& stroke : all.strokes) length += length_of(all, stroke);
@@ -265,12 +265,12 @@ TEST(StrokesOnce, ACrowdFarFromTheRestIsNoMatter) {
 TEST(StrokesOnce, NorIsItWhereMoreCountsAsOneLine) {
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
-  const Drawing drawing = far_crowd(under_sanitizer ? 4000 : 20000);
+  const Drawing drawing = far_crowd(tries_little ? 4000 : 20000);
   for (const double apart : {0.09, 0.12, 1.0}) {
     // All lines are 0.1 long. If `apart` is greater, each is just a point unless it meets another line, as many of
     // 20000 do.
     const bool is_empty = chain_strokes(surfaces, drawing, {.by_instance = false, .apart = apart}).strokes.empty();
-    EXPECT_EQ(is_empty, apart == 1.0 || (under_sanitizer && apart > 0.1));
+    EXPECT_EQ(is_empty, apart == 1.0 || (tries_little && apart > 0.1));
   }
 }
 
@@ -341,7 +341,7 @@ TEST(StrokesOnce, PiecesOfOneLineCoverItOnceHoweverLongTheyAre) {
 TEST(StrokesOnce, LongLinesThatCrossAreNoQuadraticMatter) {
   const Scene scene = scene_of(prism(square));
   const Surfaces surfaces(scene);
-  const std::size_t count = under_sanitizer ? 4000 : 40000;
+  const std::size_t count = tries_little ? 4000 : 40000;
   for (const bool is_star : {false, true}) {
     const PiecesOfLines source = pieces_of_lines(int(count), 1, 7);
     Drawing drawing = source.drawing;

@@ -43,7 +43,7 @@ TEST(DrawnModels, PointsOfPartsAreHiddenWhereATriangleIsBefore) {
     for (const View& view : views_of(surfaces)) {
       const Drawing drawing = draw_lines(surfaces, view);
       const PointOracle oracle(surfaces, view);
-      const std::size_t step = 1 + drawing.parts.size() / (under_sanitizer ? 20 : 150);
+      const std::size_t step = 1 + drawing.parts.size() / (tries_little ? 20 : 150);
       for (std::size_t i = 0; i < drawing.parts.size(); i += step) {
         const DrawnPart& part = drawing.parts[i];
         const DrawnEdge& edge = drawing.edges[part.edge];

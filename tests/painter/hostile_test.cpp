@@ -157,7 +157,7 @@ Scene stack(int count) {
 }
 
 TEST(Hostile, StacksArePassedOverManyAtATime) {
-  const int count = under_sanitizer ? 3000 : 20000;
+  const int count = tries_little ? 3000 : 20000;
   const Scene scene = stack(count);
   const Surfaces surfaces(scene);
   const PaintOrder order = painter(surfaces, frame(surfaces, 64, 64));

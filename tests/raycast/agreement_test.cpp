@@ -72,7 +72,7 @@ TEST(Agreement, OnModels) {
     SCOPED_TRACE(file);
     const Scene scene = load(model(file));
     const Surfaces surfaces(scene);
-    const View view = under_sanitizer ? frame(surfaces, 200, 150) : frame(surfaces, 800, 600);
+    const View view = tries_little ? frame(surfaces, 200, 150) : frame(surfaces, 800, 600);
     const Agreement answer = expect_explained(surfaces, view);
     RecordProperty(file, std::to_string(answer.differing()) +
                              " differ: " + std::to_string(answer.count(Difference::edge)) + " edge, " +

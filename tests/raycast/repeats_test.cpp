@@ -14,7 +14,7 @@ namespace {
 
 TEST(Repeats, RaysMeetTheFirst) {
   Mesh mesh;
-  const int count = under_sanitizer ? 500 : 20'000;
+  const int count = tries_little ? 500 : 20'000;
   for (int i = 0; i < count; ++i) {
     add_triangle(mesh, {-9, -9, 0}, {9, -9, 0.1f}, {0, 9, 0});
     add_triangle(mesh, {-9, -9, -1}, {9, -9, 1}, {0, 9, 0.1f});
@@ -49,7 +49,7 @@ Scene copies_of_two(int count) {
 
 // If every tile tested every copy, a million of them would take minutes.
 TEST(Repeats, AMillionCostLikeOne) {
-  const int count = under_sanitizer ? 5'000 : 500'000;
+  const int count = tries_little ? 5'000 : 500'000;
   const Indexed one(copies_of_two(1)), many(copies_of_two(count));
   EXPECT_EQ(many.index.triangle_count(), std::uint32_t(2 * count));
   View view;

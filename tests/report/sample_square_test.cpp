@@ -127,7 +127,7 @@ TEST_P(SquareOfEveryKind, MeetsAndContainsAsRationalArithmeticSays) {
     }
   }
   // One seed need not have all cases, nor triangles that reach behind the eye.
-  if (under_sanitizer || GetParam() == Kind::huge || GetParam() == Kind::through_eye) return;
+  if (tries_little || GetParam() == Kind::huge || GetParam() == Kind::through_eye) return;
   EXPECT_GT(missed, 0u);
   EXPECT_GT(contained, GetParam() == Kind::slivers ? 0u : seeds(6));
   EXPECT_GT(touched, 0u);

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 
 #include "frontmost/base.h"
@@ -24,9 +25,12 @@ inline const bool under_sanitizer = true;
 inline const bool under_sanitizer = &__asan_init || &__tsan_init;
 #endif
 
-/// Number of seeds to try: all or, under a sanitizer, an eighth. A sanitizer is ten to thirty times slower, and looks
-/// for other faults than wrong results.
-inline std::uint64_t seeds(std::uint64_t count) { return under_sanitizer ? (count + 7) / 8 : count; }
+/// Whether tests try little: under a sanitizer, which is ten to thirty times slower and looks for other faults than
+/// wrong results; and where FRONTMOST_TRY_LITTLE is set, as ./dev room does for a quick answer.
+inline const bool tries_little = under_sanitizer || std::getenv("FRONTMOST_TRY_LITTLE");
+
+/// Number of seeds to try: all or, where tests try little, an eighth.
+inline std::uint64_t seeds(std::uint64_t count) { return tries_little ? (count + 7) / 8 : count; }
 
 /// Cancels at question number `last` and at all later ones; without `last`, never.
 class CountingWatch {

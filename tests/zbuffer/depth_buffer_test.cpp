@@ -7,6 +7,7 @@
 
 #include "frontmost/zbuffer.h"
 #include "support/depth_oracle.h"
+#include "support/effort.h"
 #include "support/random_scene.h"
 #include "support/same_visible.h"
 
@@ -57,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(DepthBuffer, DepthOfEveryKind, testing::ValuesIn(all_ki
 TEST_P(DepthOfEveryKind, EqualsTheStateMachineOnEveryInstructionSet) {
   const bool covers_little = GetParam() == Kind::tiny || GetParam() == Kind::slivers;
   std::size_t seen = 0;
-  for (std::uint64_t seed = 0; seed < 24; ++seed) {
+  for (std::uint64_t seed = 0; seed < seeds(24); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed + 500);
     const Scene scene = scene_of(random_mesh(GetParam(), (20 + random.below(60)) * (covers_little ? 6 : 1), seed));
@@ -83,7 +84,7 @@ TEST_P(DepthOfEveryKind, EqualsTheStateMachineOnEveryInstructionSet) {
       expect_as_oracle(oracle, buffer, view);
     }
   }
-  EXPECT_GT(seen, covers_little ? 200u : 1'000u) << "the scenes have become empty";
+  if (!tries_little) EXPECT_GT(seen, covers_little ? 200u : 1'000u) << "the scenes have become empty";
 }
 
 // Tests every function with every format and direction on its own.

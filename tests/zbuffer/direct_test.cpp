@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(Direct, DirectOfEveryKind, testing::ValuesIn(all_kinds)
 
 TEST_P(DirectOfEveryKind, EqualsTheClusters) {
   std::size_t seen = 0;
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < seeds(40); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed + 900);
     const int count = 20 + random.below(400);
@@ -48,13 +48,13 @@ TEST_P(DirectOfEveryKind, EqualsTheClusters) {
     view.samples = seed % 5 == 4 ? 1 << random.below(5) : 1;
     seen += expect_same_both_ways(scene, view, 1 + int(seed % 3));
   }
-  EXPECT_GT(seen, 1'000u) << "the scenes have become empty";
+  if (!tries_little) EXPECT_GT(seen, 1'000u) << "the scenes have become empty";
 }
 
 // The scene has more batches than are drawn at a time, so tiles are resumed.
 TEST(Direct, TakesUpTilesAgain) {
   for (const Kind kind : {Kind::tiny, Kind::shared_grid}) {
-    Scene scene = scene_of(random_mesh(kind, under_sanitizer ? 9'000 : 90'000, 3));
+    Scene scene = scene_of(random_mesh(kind, tries_little ? 9'000 : 90'000, 3));
     for (int i = 0; i < 6; ++i) scene.instances.push_back(scene.instances.front());
     for (std::size_t i = 0; i < scene.instances.size(); ++i)
       scene.instances[i].world_from_mesh[3] += glm::dvec4(0.1, 0.02, 0.05, 0) * double(i);

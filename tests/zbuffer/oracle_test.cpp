@@ -102,7 +102,7 @@ TEST(ZBuffer, PermutedTrianglesShowTheSameSurfaces) {
 
 // Splitting every triangle at the middle of an edge, if that is exact on the screen, covers the same samples.
 TEST(ZBuffer, SharedEdgesLeaveNoGapAndNoOverlap) {
-  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+  for (std::uint64_t seed = 0; seed < seeds(30); ++seed) {
     // A fan around an inner vertex fills a square, covering every sample exactly once.
     Random random(seed);
     Mesh mesh;

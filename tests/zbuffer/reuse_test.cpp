@@ -142,7 +142,7 @@ TEST(ZBuffer, AFlightAllocatesNothingOnceItHasBeenFlown) {
   const glm::dvec3 middle = surfaces.bounds().centre(), up = direction(scene.up);
   (void)cluster_set(surfaces);  // otherwise the first frame makes them
   ZBuffer buffer;
-  const int frames = under_sanitizer ? 40 : 300;
+  const int frames = tries_little ? 40 : 300;
   const auto fly = [&] {
     View view = frame(surfaces, 640, 480);
     const std::size_t before = allocation_count();

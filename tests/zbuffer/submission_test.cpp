@@ -7,6 +7,7 @@
 
 #include "frontmost/zbuffer.h"
 #include "support/depth_oracle.h"
+#include "support/effort.h"
 #include "support/random_scene.h"
 
 namespace frontmost::test {
@@ -32,7 +33,7 @@ bool is_as_oracle(const DepthOracle& expected, const DepthBuffer& actual, const 
 
 // ALWAYS shows the last triangle, so any triangle out of order is visible.
 TEST(Submission, OrderIsKeptAcrossSizesTilesAndClipping) {
-  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+  for (std::uint64_t seed = 0; seed < seeds(40); ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed);
     const Scene scene = scene_of(mixed_mesh(1 + random.below(90), seed));
