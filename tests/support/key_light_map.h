@@ -28,10 +28,10 @@ namespace frontmost::test {
     values[k][0] = position[k];
     values[3 + k][0] = normal[k];
   }
-  const bool is_asked = true;
-  float light = 0;
-  map.find_light({values[0], values[1], values[2], values[3], values[4], values[5], 1}, &is_asked, &light, isa);
-  return light;
+  const bool is_asked[16] = {true};
+  float light[16] = {};
+  map.find_light({values[0], values[1], values[2], values[3], values[4], values[5], 1}, is_asked, light, isa);
+  return light[0];
 }
 
 }  // namespace frontmost::test

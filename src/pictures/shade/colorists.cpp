@@ -39,7 +39,10 @@ float wrapped_texcoord(float value) {
 /// lifted above the triangle. Inside a hollow body this light would have to cross the wall, but no shadow shows it:
 /// rays ignore the triangle from which they start, and the bias of a shadow map is thicker than the wall.
 bool comes_through(const Geometry& g, int i, const glm::vec3& to_light) {
-  return glm::dot(g.plane_normal.at(i), to_light) <= 0 && g.smooth_position.at(i) == g.position.at(i);
+  const glm::vec3 lifted = g.smooth_position.at(i), flat = g.position.at(i);
+  // Without branches, so that the compiler can use vectors.
+  return (glm::dot(g.plane_normal.at(i), to_light) <= 0) & (lifted.x == flat.x) & (lifted.y == flat.y) &
+         (lifted.z == flat.z);
 }
 
 /// Returns the grey of a depth: bright for the nearest, dark for the farthest.
@@ -120,11 +123,11 @@ void Lit::add_far(const std::vector<TriangleSetup>& setups, FragmentBatch& batch
     const DirectLight& light = lights.far[k].light;
     std::fill_n(batch.shadow.values, batch.coverage.count, 1.0f);
     if (shadows.has_shadows(k)) {
+      const glm::vec3 to_light = light.to_light;  // a copy, which writes below cannot alias
       for (int i = 0; i < batch.coverage.count; ++i) {
-        is_asked[i] = glm::dot(g.normal.at(i), light.to_light) > 0;
-        if (!is_asked[i] || !comes_through(g, i, light.to_light)) continue;
-        batch.shadow[i] = 0;
-        is_asked[i] = false;
+        const bool is_lit = glm::dot(g.normal.at(i), to_light) > 0, is_dark = is_lit & comes_through(g, i, to_light);
+        batch.shadow[i] = is_dark ? 0.0f : 1.0f;
+        is_asked[i] = is_lit & !is_dark;
       }
       shadows.find_arriving(k, {setups, is_asked, batch}, isa);
     }

@@ -174,7 +174,7 @@ class Smoother {
   }
 
   void smooth_bucket(std::size_t bucket);
-  void smooth_group(const std::vector<std::uint32_t>& group, std::vector<Facet>& facets);
+  void smooth_group(const std::vector<std::uint32_t>& group, const std::uint32_t* corners, const Facet* facets);
 
   const Mesh& mesh_;
   const Execution& execution_;
@@ -224,9 +224,12 @@ void Smoother::smooth_bucket(std::size_t bucket) {
   const std::uint32_t* corners = corners_.data() + bucket_begin_[bucket];
   const std::uint32_t count = bucket_begin_[bucket + 1] - bucket_begin_[bucket];
   std::vector<PositionBits> positions(count);
+  // Facets are made in this order, and not by chain, as long as the prefetched positions are in the cache.
+  std::vector<Facet> facets(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     prefetch(corners, i, count);
     positions[i] = bits_of(position(corners[i]));
+    facets[i] = facet_at(mesh_, corners[i]);
   }
   Chains chains(count);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -234,26 +237,26 @@ void Smoother::smooth_bucket(std::size_t bucket) {
     chains.add(i, hash_of(p), [&](std::uint32_t first) { return positions[first] == p; });
   }
   std::vector<std::uint32_t> group;
-  std::vector<Facet> facets;
   for (const std::uint32_t first : chains.firsts()) {
     group.clear();
-    for (std::uint32_t i = first; i != Chains::none; i = chains.next(i)) group.push_back(corners[i]);
-    smooth_group(group, facets);
+    for (std::uint32_t i = first; i != Chains::none; i = chains.next(i)) group.push_back(i);
+    smooth_group(group, corners, facets.data());
   }
 }
 
-void Smoother::smooth_group(const std::vector<std::uint32_t>& group, std::vector<Facet>& facets) {
-  facets.clear();
-  for (const std::uint32_t corner : group) facets.push_back(facet_at(mesh_, corner));
-  for (std::size_t i = 0; i < group.size(); ++i) {
-    if (!wanted_.contains(group[i] / 3)) continue;
-    glm::dvec3 sum = facets[i].normal * facets[i].weight;
+/// `group` are the places of corners with one position among those of the bucket.
+void Smoother::smooth_group(const std::vector<std::uint32_t>& group, const std::uint32_t* corners,
+                            const Facet* facets) {
+  for (const std::uint32_t i : group) {
+    if (!wanted_.contains(corners[i] / 3)) continue;
+    const Facet& own = facets[i];
+    glm::dvec3 sum = own.normal * own.weight;
     if (group.size() <= kMostCorners)
-      for (std::size_t j = 0; j < group.size(); ++j)
-        if (j != i && glm::dot(facets[i].normal, facets[j].normal) >= crease_cosine)
+      for (const std::uint32_t j : group)
+        if (j != i && glm::dot(own.normal, facets[j].normal) >= crease_cosine)
           sum += facets[j].normal * facets[j].weight;
     const double length = std::sqrt(glm::dot(sum, sum));
-    normals_[group[i] / 3][group[i] % 3] = pack(glm::vec3(length > 0 ? sum / length : facets[i].normal));
+    normals_[corners[i] / 3][corners[i] % 3] = pack(glm::vec3(length > 0 ? sum / length : own.normal));
   }
 }
 

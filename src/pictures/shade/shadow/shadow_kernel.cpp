@@ -102,9 +102,10 @@ void FindPlacesOfSpot(const ShadowGrid& grid, const ShadowPoints& points, MapPoi
   }
 }
 
-/// Bit masks of a vector of points.
+/// The light of a vector of points, by their blocks.
 struct LightOfBlocks {
-  std::uint64_t lit, partly;  ///< points that are wholly lit, and points that need the filter; all others are dark
+  VF light;              ///< 1 for points that are wholly lit, else 0
+  std::uint64_t partly;  ///< bits of the points that need the filter
 };
 
 /// Decides the points from i on by their blocks. Points whose filter reaches out of the map are lit.
@@ -123,15 +124,15 @@ HWY_INLINE LightOfBlocks AskBlocks(const ShadowGrid& grid, const MapPoints& poin
   const VF key = hn::LoadU(d, points.key + i);
   const MF is_before = hn::Ge(key, hn::GatherIndex(d, grid.nearest, number));
   const MF is_behind = hn::Lt(key, hn::GatherIndex(d, grid.farthest, number));
-  return {BitsOf(d, hn::Or(is_before, hn::Not(is_within))),
+  return {hn::IfThenElseZero(hn::Or(is_before, hn::Not(is_within)), All(1.0f)),
           BitsOf(d, hn::AndNot(hn::Or(is_before, is_behind), is_within))};
 }
 
-/// Returns one bit for each of `count` answers.
-HWY_INLINE std::uint64_t BitsAt(const bool* answers, int count) {
-  std::uint64_t bits = 0;
-  for (int i = 0; i < count; ++i) bits |= std::uint64_t(answers[i]) << i;
-  return bits;
+/// Returns the lanes whose answer is yes, of `count` answers. The room behind the answers holds a vector.
+HWY_INLINE MF AskedAt(const bool* answers, int count) {
+  const hn::Rebind<std::uint8_t, DF> bytes;
+  const VU asked = hn::PromoteTo(DU(), hn::LoadU(bytes, reinterpret_cast<const std::uint8_t*>(answers)));
+  return hn::And(hn::RebindMask(DF(), hn::Ne(asked, hn::Zero(DU()))), hn::FirstN(DF(), std::size_t(count)));
 }
 
 /// The columns of a window that fit into a vector.
@@ -173,10 +174,10 @@ void FindLight(const ShadowGrid& grid, const ShadowPoints& points, const bool* i
   MapPoints places;
   grid.is_spot ? FindPlacesOfSpot(grid, points, places) : FindPlacesOfSun(grid, points, places);
   for (int i = 0; i < points.count; i += lanes) {
-    const std::uint64_t asked = BitsAt(is_asked + i, std::min(lanes, points.count - i));
+    const MF asked = AskedAt(is_asked + i, points.count - i);
     const LightOfBlocks blocks = AskBlocks(grid, places, i);
-    ForEachBit(asked, [&](std::size_t k) { light[std::size_t(i) + k] = blocks.lit >> k & 1 ? 1.0f : 0.0f; });
-    ForEachBit(asked & blocks.partly, [&](std::size_t k) {
+    hn::BlendedStore(blocks.light, asked, DF(), light + i);
+    ForEachBit(BitsOf(DF(), asked) & blocks.partly, [&](std::size_t k) {
       const std::size_t p = std::size_t(i) + k;
       light[p] = FilterWindow(grid, {places.x[p], places.y[p], places.key[p]});
     });

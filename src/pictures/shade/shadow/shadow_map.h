@@ -117,7 +117,7 @@ class ShadowMap {
   [[nodiscard]] const ShadowGrid& grid() const { return grid_; }
 
   /// Sets light[i] of each point that `is_asked` to the share of the light that arrives there, 0 to 1. Shadow edges are
-  /// a few texels wide.
+  /// a few texels wide. Both arrays have room for loops over whole vectors.
   void find_light(const ShadowPoints& points, const bool* is_asked, float* light, Isa isa) const;
 
  private:
