@@ -15,9 +15,8 @@ endif()
 add_library(frontmost_flags INTERFACE)
 # No fused multiply-add, so that all targets give the same bytes.
 target_compile_options(frontmost_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wshadow -Wnon-virtual-dtor)
-# Checks of alignments, and the counters by which libFuzzer sees which code an input reaches, take a third of the time of
-# compiling under AddressSanitizer. The preset asan has them in the parts that read input; ./dev test --all and ./dev fuzz
-# have them everywhere.
+# Checks of alignments take a quarter of the time of compiling under AddressSanitizer. The preset asan has them in the parts
+# that read input; ./dev test --all and ./dev fuzz have them everywhere.
 set(FRONTMOST_CHECKS "" CACHE STRING "Options of all files, for more checks by a sanitizer")
 set(FRONTMOST_INPUT_CHECKS "" CACHE STRING "Options for more checks of the parts files and gl, which read bytes that users bring")
 target_compile_options(frontmost_flags INTERFACE ${FRONTMOST_CHECKS})

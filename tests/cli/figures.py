@@ -214,7 +214,7 @@ def differing(a, b, pixels, bound):
 
 
 def browser():
-    names = ["chromium-headless-shell", "chromium", "google-chrome"]
+    names = ["chromium-headless-shell", "chromium", "chromium-browser", "google-chrome"]
     return next((found for found in map(shutil.which, names) if found), None)
 
 

@@ -5,7 +5,7 @@
     report_page.py PROGRAM
 
 A script is added to a copy of the page. The script clicks and writes what the page then shows into the page, which the
-browser prints. Skipped if chromium is missing.
+browser prints. Skipped if there is neither chromium-headless-shell nor chromium.
 """
 import json
 import pathlib
@@ -137,7 +137,7 @@ def check_clicks(told):
 def main():
     browser = shutil.which("chromium-headless-shell") or shutil.which("chromium")
     if not browser:
-        print("skipped: there is no chromium")
+        print("skipped: there is neither chromium-headless-shell nor chromium")
         sys.exit(77)
     program = pathlib.Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as name:

@@ -23,13 +23,13 @@ namespace frontmost::test {
 /// The share of the light that arrives at one point, given in the form of ShadowPoints.
 [[nodiscard]] inline float light_at(const shading::ShadowMap& map, const glm::vec3& position, const glm::vec3& normal,
                                     Isa isa = Isa::best) {
-  float values[6][16] = {};
+  float values[6][shading::batch_room] = {};
   for (int k = 0; k < 3; ++k) {
     values[k][0] = position[k];
     values[3 + k][0] = normal[k];
   }
-  const bool is_asked[16] = {true};
-  float light[16] = {};
+  const bool is_asked[shading::batch_room] = {true};
+  float light[shading::batch_room] = {};
   map.find_light({values[0], values[1], values[2], values[3], values[4], values[5], 1}, is_asked, light, isa);
   return light[0];
 }

@@ -15,7 +15,7 @@ INSTANTIATE_TEST_SUITE_P(ZBuffer, CutoutsOfEveryKind, testing::ValuesIn(all_kind
 
 TEST_P(CutoutsOfEveryKind, EqualTheOracleOnEveryInstructionSet) {
   std::size_t seen = 0;
-  for (std::uint64_t seed = 0; seed < seeds(8); ++seed) {
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed + 300);
     const Scene scene = cutout_scene(random_mesh(GetParam(), 400, seed), Cut(seed % 2), 0.5f, seed);
@@ -28,7 +28,7 @@ TEST_P(CutoutsOfEveryKind, EqualTheOracleOnEveryInstructionSet) {
     for (const Isa isa : available_isas())
       expect_same(expected, draw_both_ways(surfaces, view, {.threads = 1 + int(seed % 2), .isa = isa}));
   }
-  if (!tries_little) EXPECT_GT(seen, 60u) << "the scenes have become empty";
+  EXPECT_GT(seen, 60u) << "the scenes have become empty";
 }
 
 /// A triangle three times at one place, all cutouts: the first one is all hole, the next two are solid.

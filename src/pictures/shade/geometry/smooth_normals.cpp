@@ -224,7 +224,7 @@ void Smoother::smooth_bucket(std::size_t bucket) {
   const std::uint32_t* corners = corners_.data() + bucket_begin_[bucket];
   const std::uint32_t count = bucket_begin_[bucket + 1] - bucket_begin_[bucket];
   std::vector<PositionBits> positions(count);
-  // Facets are made in this order, and not by chain, as long as the prefetched positions are in the cache.
+  // Facets are made in this order, and not by chain, while the prefetched positions are still in the cache.
   std::vector<Facet> facets(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     prefetch(corners, i, count);
