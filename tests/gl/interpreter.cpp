@@ -51,7 +51,7 @@ int wrapped(int i, int size, GLenum mode, bool is_linear) {
   return std::clamp(i, 0, size - 1);
 }
 
-Colors sampled_level(const State& s, std::size_t number, bool is_linear, Range u, Range v) {
+Colors sampled_level(const TextureUnit& s, std::size_t number, bool is_linear, Range u, Range v) {
   const Level& level = s.image->levels[number];
   const GLenum format = s.image->format;
   const auto texel = [&](int i, int j, std::size_t k) {
@@ -81,7 +81,7 @@ Colors sampled_level(const State& s, std::size_t number, bool is_linear, Range u
 }
 
 /// `change` is the square of the change from pixel to pixel, in texels of the first level.
-Colors sampled(const State& s, Range u, Range v, Range change) {
+Colors sampled(const TextureUnit& s, Range u, Range v, Range change) {
   Colors c{nothing(), nothing(), nothing(), nothing()};
   const auto add = [&](const Colors& by) {
     for (std::size_t k = 0; k < kColors; ++k) c[k] = hull(c[k], by[k]);
@@ -113,14 +113,17 @@ Colors sampled(const State& s, Range u, Range v, Range change) {
 }
 
 /// Combiners: OpenGL 1.5, table 3.24.
-void apply_combiner(const State& s, Colors& c, Colors t) {
+void apply_combiner(const TextureUnit& s, Colors& c, const Colors& primary, Colors t) {
   // Components that the texture lacks.
   if (s.image->format == GL_RGB || s.image->format == GL_LUMINANCE) t[3] = 1;
   if (s.image->format == GL_ALPHA) t[0] = t[1] = t[2] = 0;
-  const Colors primary = c, constant{s.env_color[0], s.env_color[1], s.env_color[2], s.env_color[3]};
+  const Colors previous = c, constant{s.env_color[0], s.env_color[1], s.env_color[2], s.env_color[3]};
   const auto argument = [&](std::size_t part, std::size_t i, std::size_t k) {
     const GLenum source = s.combiner.sources[part][i], operand = s.combiner.operands[part][i];
-    const Colors& from = source == GL_TEXTURE ? t : source == GL_CONSTANT ? constant : primary;
+    const Colors& from = source == GL_TEXTURE         ? t
+                         : source == GL_CONSTANT      ? constant
+                         : source == GL_PRIMARY_COLOR ? primary
+                                                      : previous;
     const Range value = from[operand == GL_SRC_COLOR || operand == GL_ONE_MINUS_SRC_COLOR ? k : 3];
     return operand == GL_SRC_COLOR || operand == GL_SRC_ALPHA ? value : Range(1) - value;
   };
@@ -146,8 +149,8 @@ void apply_combiner(const State& s, Colors& c, Colors t) {
 }
 
 /// Tables 3.22 and 3.23 of the specification of OpenGL 1.5.
-void apply_texture(const State& s, Colors& c, const Colors& t) {
-  if (s.env_mode == GL_COMBINE) return apply_combiner(s, c, t);
+void apply_texture(const TextureUnit& s, Colors& c, const Colors& primary, const Colors& t) {
+  if (s.env_mode == GL_COMBINE) return apply_combiner(s, c, primary, t);
   const GLenum format = s.image->format;
   const bool has_color = format != GL_ALPHA, has_alpha = format != GL_LUMINANCE && format != GL_RGB;
   const bool is_rgb = format == GL_RGB || format == GL_RGBA;  // GL_DECAL is undefined for others, and does nothing
@@ -228,8 +231,10 @@ Pixel either(const Pixel& a, const Pixel& b) {
 // ---- Vertices and primitives.
 
 // Values of a vertex: window x and y in 1/256 pixel and window depth, all times w, and w; distances from the near, the
-// far and the user's clip planes, positive on the side that is seen; color; s, t, q; distance from the eye; 1.
-enum Value { kX, kY, kZ, kW, kNear, kFar, kUser, kColor = kUser + 2, kS = kColor + 4, kT, kQ, kFog, kOne, kValues };
+// far and the user's clip planes, positive on the side that is seen; color; s, t, q of each unit; distance from the
+// eye; 1.
+enum Value { kX, kY, kZ, kW, kNear, kFar, kUser, kColor = kUser + 2, kS = kColor + 4, kT, kQ };
+constexpr std::size_t kFog = kS + 3 * kUnits, kOne = kFog + 1, kValues = kOne + 1;
 
 struct Corner {
   std::array<double, kValues> v;
@@ -244,7 +249,8 @@ struct Fragment {
   std::array<Range, kValues> values;
   Range depth;
   std::size_t source;
-  Range change = 0;  ///< of texture coordinates from pixel to pixel: the square of the greater length, in texels
+  /// Of each unit's texture coordinates from pixel to pixel: the square of the greater length, in texels.
+  std::array<Range, kUnits> changes{};
 };
 
 using Linear = glm::dvec3;  ///< a linear function over the window
@@ -276,7 +282,7 @@ struct Primitive {
   double band = 0;                       ///< pixels by which rounding may move vertices that a plane makes
   double slope = 0;                      ///< greatest change of a weight from pixel to pixel, out of 1
   double offset = 0;                     ///< steps of depth
-  Range change_of_texture = 0;           ///< as in Fragment
+  std::array<Range, kUnits> changes{};   ///< as in Fragment
   std::size_t source = 0;
 
   explicit Primitive(const std::array<Corner, n>& corners)
@@ -314,7 +320,8 @@ struct Primitive {
     if (!is_whole && most_inverse > 0) least_w = std::max(least_w, 1 / most_inverse);
     if (!is_whole) band = (1.5 + farthest / least_w * 0x1p-22) / 256;
     const double steepest = has_one_depth ? 0 : std::max(std::abs(linear[kZ].x), std::abs(linear[kZ].y)) * 256;
-    if (s.texture && n == 3) change_of_texture = changes(*s.image);
+    for (std::size_t unit = 0; unit < kUnits; ++unit)
+      if (s.units[unit].is_on && n == 3) changes[unit] = changes_of(*s.units[unit].image, 3 * unit);
     const auto [factor, units] = s.polygon_offset;
     if (s.offset && n == 3) offset = steepest * kMostDepth * double(factor) + double(units);
     // A depth depends on nothing but the vertices, for triangles in any order, and on what cuts them.
@@ -323,14 +330,14 @@ struct Primitive {
     source = to.sources.try_emplace(key, to.sources.size() + 1).first->second;
   }
 
-  /// The change is known only where texture coordinates are linear in the window.
-  [[nodiscard]] Range changes(const Image& image) const {
+  /// The change is known only where texture coordinates are linear in the window. `from` is what precedes the unit's.
+  [[nodiscard]] Range changes_of(const Image& image, std::size_t from) const {
     const auto is_one = [&](std::size_t k) { return limits[k].low == limits[k].high; };
-    if (!is_whole || !is_one(kW) || !is_one(kQ)) return {0, 1e30};
-    const double scale = 256 * limits[kW].low / limits[kQ].low;
+    if (!is_whole || !is_one(kW) || !is_one(kQ + from)) return {0, 1e30};
+    const double scale = 256 * limits[kW].low / limits[kQ + from].low;
     double across = 0, up = 0, error = 0;
-    for (const std::size_t k : {std::size_t(kS), std::size_t(kT)}) {
-      const double size = k == kS ? image.levels[0].width : image.is_1d ? 0 : image.levels[0].height;
+    for (const std::size_t k : {kS + from, kT + from}) {
+      const double size = k == kS + from ? image.levels[0].width : image.is_1d ? 0 : image.levels[0].height;
       across += std::pow(linear[k].x * scale * size, 2), up += std::pow(linear[k].y * scale * size, 2);
       error += 1e-6 * (1 + slope) * std::max(std::abs(limits[k].low), std::abs(limits[k].high)) * size;
     }
@@ -369,7 +376,7 @@ struct Primitive {
     }
     const Range z = unit(around([&](double px, double py) { return at(linear[kZ], px, py); }));
     const double depth_error = is_whole ? 3 : 12 + most / least_w * 4 + std::abs(offset) * 0.1;
-    f.change = change_of_texture;
+    f.changes = changes;
     f.depth = has_one_depth ? depth_of(c[0].z, offset) : stored(z * kMostDepth + offset, depth_error, kMostDepth);
     return f;
   }
@@ -428,7 +435,8 @@ struct Drawing {
     }
     c.is_inside = c.is_whole && Range(left, left + width).holds(c.x / 256) && Range(low, low + height).holds(c.y / 256);
     std::copy_n(vertex.color.begin(), 4, c.v.begin() + kColor);
-    c.v[kS] = double(vertex.texcoord[0]), c.v[kT] = double(vertex.texcoord[1]), c.v[kQ] = double(vertex.texcoord[3]);
+    for (std::size_t unit = 0, k = kS; unit < kUnits; ++unit)
+      for (const std::size_t part : {0, 1, 3}) c.v[k++] = double(vertex.texcoords[unit][part]);
     return c;
   }
 
@@ -524,11 +532,17 @@ struct Drawing {
   void draw_fragment(Pixel& p, const Fragment& f) const {
     const auto& v = f.values;
     Colors c{v[kColor], v[kColor + 1], v[kColor + 2], v[kColor + 3]}, kept;
-    const Range q = v[kQ], inverse = q.low > 0 ? Range(1 / q.high, 1 / q.low) : Range(-1e9, 1e9);
-    const auto over_q = [&](Range r) {
-      return q.low == 1 && q.high == 1 ? r : wider(r * inverse, 1e-6 * (1 + std::abs(r.low)));
-    };
-    if (s.texture) apply_texture(s, c, sampled(s, over_q(v[kS]), over_q(v[kT]), f.change));
+    const Colors primary = c;
+    for (std::size_t unit = 0; unit < kUnits; ++unit) {
+      const TextureUnit& by = s.units[unit];
+      const Range q = v[kQ + 3 * unit], inverse = q.low > 0 ? Range(1 / q.high, 1 / q.low) : Range(-1e9, 1e9);
+      const auto over_q = [&](Range r) {
+        return q.low == 1 && q.high == 1 ? r : wider(r * inverse, 1e-6 * (1 + std::abs(r.low)));
+      };
+      if (!by.is_on) continue;
+      const Range u = over_q(v[kS + 3 * unit]), t = over_q(v[kT + 3 * unit]);
+      apply_texture(by, c, primary, sampled(by, u, t, f.changes[unit]));
+    }
     if (s.fog) apply_fog(s, c, v[kFog]);
     Answer seen = f.covered, right = Answer::yes, in_front = Answer::yes;
     if (s.alpha_test) seen = std::min(seen, compared(s.alpha_func, byte(c[3]), byte(double(s.alpha_ref))));

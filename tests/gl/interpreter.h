@@ -32,8 +32,11 @@ inline constexpr Matrix kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0
 using Color = std::array<float, 4>;
 using Texel = std::array<std::uint8_t, 4>;
 
+inline constexpr std::size_t kUnits = 2;  ///< of textures
+
 struct Vertex {
-  std::array<float, 4> position, color, texcoord;
+  std::array<float, 4> position, color;
+  std::array<std::array<float, 4>, kUnits> texcoords;
 };
 
 struct Level {
@@ -57,6 +60,15 @@ struct Combiner {
   std::array<float, 2> scales{1, 1};
 };
 
+struct TextureUnit {
+  bool is_on = false;
+  std::shared_ptr<const Image> image;
+  GLenum min_filter = GL_NEAREST, mag_filter = GL_NEAREST, wrap_s = GL_REPEAT, wrap_t = GL_REPEAT;
+  GLenum env_mode = GL_MODULATE;
+  Color env_color{}, border_color{};
+  Combiner combiner;
+};
+
 /// The state that decides what a call draws. The product of the matrices must be exact in doubles.
 struct State {
   Matrix projection = kIdentity, modelview = kIdentity;
@@ -64,8 +76,8 @@ struct State {
   std::array<double, 2> depth_range{0, 1};
   std::array<std::array<double, 4>, 2> clip_planes{};  ///< eye space
   bool scissor_test = false, cull_face = false, blend = false, logic = false, alpha_test = false, depth_test = false,
-       stencil_test = false, fog = false, texture = false, offset = false, stipple = false, clip_plane0 = false,
-       clip_plane1 = false, depth_mask = true;
+       stencil_test = false, fog = false, offset = false, stipple = false, clip_plane0 = false, clip_plane1 = false,
+       depth_mask = true;
   GLenum culled = GL_BACK, front = GL_CCW, shade_model = GL_SMOOTH;
   std::array<GLenum, 2> polygon_modes{GL_FILL, GL_FILL};  ///< of front and back
   GLenum alpha_func = GL_ALWAYS, depth_func = GL_LESS, stencil_func = GL_ALWAYS, logic_op = GL_COPY;
@@ -75,15 +87,12 @@ struct State {
   std::array<GLenum, 3> stencil_ops{GL_KEEP, GL_KEEP, GL_KEEP};     ///< fail, depth fail, pass
   std::array<GLenum, 4> factors{GL_ONE, GL_ZERO, GL_ONE, GL_ZERO};  ///< source and target of color, then of alpha
   std::array<GLenum, 2> equations{GL_FUNC_ADD, GL_FUNC_ADD};        ///< of color and alpha
-  Color blend_color{}, clear_color{}, fog_color{}, env_color{}, border_color{};
+  Color blend_color{}, clear_color{}, fog_color{};
   std::array<bool, 4> color_mask{true, true, true, true};
   double clear_depth = 1;
   std::array<float, 2> polygon_offset{};  ///< factor, units
   GLushort stipple_pattern = 0xFFFF;
-  std::shared_ptr<const Image> image;
-  GLenum min_filter = GL_NEAREST, mag_filter = GL_NEAREST, wrap_s = GL_REPEAT, wrap_t = GL_REPEAT;
-  GLenum env_mode = GL_MODULATE;
-  Combiner combiner;
+  std::array<TextureUnit, kUnits> units;
 };
 
 struct Pixel {
