@@ -379,10 +379,10 @@ TEST(RandomStreams, EqualTheInterpreter) {
     EXPECT_EQ(compare(stream, drawn(stream), doubtful, deep), "") << "seed " << seed;
     pixels += stream.width * stream.height;
   }
-  // A sanitizer draws a dozen streams only, of which one has many such pixels.
-  const int part = seeds(100) < 100 ? 5 : 10;
-  EXPECT_LT(doubtful, pixels / part);
-  EXPECT_LT(deep, pixels / part);
+  // A sanitizer draws a dozen streams only, of which one has many such pixels. Two textures leave more colors in doubt.
+  const bool are_few = seeds(100) < 100;
+  EXPECT_LT(doubtful, pixels / (are_few ? 5 : 10));
+  EXPECT_LT(deep, pixels / (are_few ? 15 : 30));
 }
 
 TEST(RandomStreams, DoNotDependOnThreadsOrInstructionSets) {
