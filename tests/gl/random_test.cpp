@@ -385,6 +385,27 @@ TEST(RandomStreams, EqualTheInterpreter) {
   EXPECT_LT(deep, pixels / (are_few ? 15 : 30));
 }
 
+TEST(LongPrimitives, GoOnWithTheirStipple) {
+  State s;
+  s.viewport = s.scissor = {0, 0, 90, 70};
+  s.stipple = true, s.stipple_pattern = 0x0F35, s.stipple_factor = 2;
+  s.polygon_modes = {GL_LINE, GL_LINE};
+  for (const GLenum mode : {GL_LINE_STRIP, GL_LINE_LOOP, GL_POLYGON}) {
+    CallStream stream{90, 70};
+    for (const int count : {10000, 30}) {  // the second stipple begins anew
+      Command c{s, ~0u, 0, mode};
+      for (int i = 0; i < count; ++i) {
+        const double angle = 6.28 * i / count, size = count / 12000.0;
+        c.vertices.push_back({{float(size * std::cos(angle)), float(size * std::sin(angle)), 0, 1}, {1, 1, 1, 1}, {}});
+      }
+      stream.commands.push_back(std::move(c));
+    }
+    int doubtful = 0, deep = 0;
+    EXPECT_EQ(compare(stream, drawn(stream), doubtful, deep), "") << "mode " << mode;
+    EXPECT_EQ(doubtful, 0);
+  }
+}
+
 TEST(RandomStreams, DoNotDependOnThreadsOrInstructionSets) {
   for (std::uint64_t seed = 0; seed < seeds(1000); seed += 4) {
     const CallStream stream = random_stream(seed);

@@ -179,6 +179,7 @@ void PrimitiveStream::carry_on(DrawInput& input) {
   name_primitives(name.draw, name.primitive);
   first_ = 0;
   is_continued_ |= has_drawn;
+  open_->is_continued = is_continued_;
   set_limit();
 }
 
@@ -341,6 +342,8 @@ void PrimitiveStream::draw_all(Frame& frame, const std::vector<Work>& works) {
     for (std::size_t i = begin; i < end; ++i)
       if (works[i].batch) works[i].batch->prepare(execution.isa);
   });
+  for (const Work& work : works)
+    if (work.batch) stipple_pixels_ = work.batch->continue_stipple(stipple_pixels_);
   std::atomic<std::uint64_t> passed{0};
   const PaintTarget target{frame, counts_samples ? &passed : nullptr, nullptr};
   const View& grid = works[0].state->grid;

@@ -158,7 +158,8 @@ class PrimitiveStream {
   Buffer<std::uint32_t> color_before_, depth_before_;  // planes of the frame before kept_ was drawn
   bool keeps_ = false;
   std::uint32_t next_id_ = 0, next_draw_ = 0;
-  int count_ = 0, limit_ = 0;  // vertices of the open batch
+  std::uint32_t stipple_pixels_ = 0;  // of the last strip that draw_all() drew
+  int count_ = 0, limit_ = 0;         // vertices of the open batch
   // The primitive between begin() and end().
   GLenum mode_ = GL_POINTS;
   int first_ = 0;              // its first vertex in the open batch

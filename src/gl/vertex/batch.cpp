@@ -26,6 +26,7 @@ void Batch::clear(std::shared_ptr<const DrawState> draw_state, Kind primitives) 
   vertex_count = triangle_count = 0;
   material_runs.clear();
   draws.clear();
+  is_continued = false;
   lines.clear();
 }
 
@@ -182,6 +183,7 @@ void Batch::place_polygons(Isa isa) {
   auto is_part_of_last = [&, range = draws.begin()](std::uint32_t t) mutable {
     while (std::next(range) != draws.end() && std::next(range)->first <= int(t)) ++range;
     const int part = int(t) - range->first;
+    if (t == 0) return is_continued && range->unit == 0;
     return t == outlined + 1 && (range->unit == 0 ? part > 0 : part % range->unit > 0);
   };
   for (const std::uint32_t t : apart) {
@@ -230,12 +232,12 @@ void Batch::place_lines() {
   const DrawBounds& bounds = state->scissor;
   const DrawBounds& window = state->viewport;
   const WindowRect& view = state->state.viewport.rect;
-  std::uint32_t pixels = 0;
+  std::uint32_t& pixels = last_pixels_;
   std::size_t kept = 0;
   line_rect = {INT32_MAX, INT32_MAX, -1, -1};
   for (WindowLine line : lines) {
     int(&v)[2] = line.vertex;
-    if (line.stipple_start == 0) pixels = 0;
+    if (line.stipple_start == 0) pixels = 0, begins_anew_ = true;
     const int codes[2] = {out_codes()[v[0]], out_codes()[v[1]]};
     if ((codes[0] & codes[1]) != 0) continue;
     bool is_seen = true;
@@ -265,6 +267,7 @@ void Batch::place_lines() {
                  std::max(line_rect.y1, rect.y1)};
     line.rect = rect;
     lines[kept++] = line;
+    if (!begins_anew_) continued_lines_ = kept;
   }
   lines.resize(kept);
   if (lines.empty()) return;
@@ -292,7 +295,16 @@ void Batch::prepare(Isa isa) {
     placed.list_tiles(state->grid);
   }
   line_rect = {0, 0, -1, -1};
+  continued_lines_ = 0, begins_anew_ = false, last_pixels_ = 0;
+  const bool is_outlined =
+      kind != Kind::triangles || (!lines.empty() && int(lines.back().number) == triangle_count - 1);
   if (!lines.empty()) place_lines();
+  if (!is_outlined) begins_anew_ = true, last_pixels_ = 0;
+}
+
+std::uint32_t Batch::continue_stipple(std::uint32_t pixels) {
+  for (std::size_t i = 0; i < continued_lines_; ++i) lines[i].stipple_start += pixels;
+  return (begins_anew_ ? 0 : pixels) + last_pixels_;
 }
 
 }  // namespace frontmost::gl_detail

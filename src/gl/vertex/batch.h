@@ -100,6 +100,10 @@ class Batch {
 
   /// Transforms, lights, clips and places everything, and makes the lists by tile.
   void prepare(Isa isa);
+  /// The stipple of the lines with which the batch begins goes on after so many pixels of earlier batches. Call it
+  /// once, after prepare(). \returns the pixels of the batch's last strip, with which the stipple goes on in the next
+  /// batch.
+  std::uint32_t continue_stipple(std::uint32_t pixels);
 
   std::shared_ptr<const DrawState> state;
   Kind kind = Kind::triangles;
@@ -107,6 +111,7 @@ class Batch {
   std::vector<DrawRange> draws;
   std::uint32_t first_id = 0;                 ///< running number of the first primitive, for Frame::ids
   std::vector<MaterialChange> material_runs;  ///< beside the state's own materials
+  bool is_continued = false;                  ///< the first primitive began in the batch before
 
   // Primitives as submitted.
   int triangle_count = 0;
@@ -130,6 +135,11 @@ class Batch {
   Buffer<float> inputs_, outputs_;
   std::size_t stride_;
   int room_;  // vertices that the outputs have room for
+  // Of place_lines(): the lines before the first one whose stipple begins anew, whether there is one, and the pixels of
+  // the last strip.
+  std::size_t continued_lines_ = 0;
+  bool begins_anew_ = false;
+  std::uint32_t last_pixels_ = 0;
 };
 
 /// Transforms and lights the vertices of a batch.
