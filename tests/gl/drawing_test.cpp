@@ -2,6 +2,7 @@
 // Pictures of single rules: order, outlines, stipples, normals, the alpha test, primitives longer than a batch.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <climits>
 #include <cmath>
@@ -225,6 +226,52 @@ TEST(Hostile, RectanglesOutsideOfEveryRangeDrawNothingOrAll) {
   glVertex2d(-1e9, 3);
   glEnd();
   EXPECT_EQ(color_at(150, 100), kBlack);
+}
+
+// ---- Stipples of outlines, which batches cut.
+
+/// The lower half of a picture of stippled outlines that `draw` makes.
+template <class Draw>
+std::vector<GLubyte> stippled(const Draw& draw) {
+  const OffScreen screen(64, 64);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_LINE), glEnable(GL_LINE_STIPPLE), glLineStipple(3, 0x35);
+  draw();
+  std::vector<GLubyte> picture = read_colors(0, 0, 64, 32);
+  EXPECT_GT(std::count(picture.begin(), picture.end(), 255), 60);
+  return picture;
+}
+
+TEST(Stipple, IsNotThatOfPrimitivesBefore) {
+  const auto before = [](GLenum mode, int count) {  // in the upper half
+    glBegin(mode);
+    for (int i = 0; i < count; ++i) glVertex2f(-0.9f + 1.7f * float(i) / float(count), i % 2 == 0 ? 0.3f : 0.9f);
+    glEnd();
+  };
+  // The first triangle of this quad has no visible edge.
+  const auto quad = [] {
+    glBegin(GL_QUADS), glEdgeFlag(0), glVertex2f(-0.9f, -0.9f), glEdgeFlag(1), glVertex2f(0.9f, -0.9f);
+    glVertex2f(0.9f, -0.1f), glEdgeFlag(0), glVertex2f(-0.9f, -0.1f), glEdgeFlag(1), glEnd();
+  };
+  EXPECT_TRUE(stippled([&] { before(GL_LINE_STRIP, 2), glLineWidth(1), quad(); }) == stippled(quad));
+  const auto polygon = [] {
+    glBegin(GL_POLYGON), glVertex2f(-0.9f, -0.9f), glVertex2f(0.9f, -0.9f), glVertex2f(0.9f, -0.1f);
+    glVertex2f(-0.9f, -0.1f), glEnd();
+  };
+  const std::vector<GLubyte> expected = stippled(polygon);
+  // Some of these leave vertices without a triangle to the next batch.
+  for (const GLenum mode : {GL_TRIANGLES, GL_TRIANGLE_STRIP, GL_QUADS, GL_QUAD_STRIP})
+    for (int count = 2040; count < 4110; count += count == 2060 ? 2025 : 1)
+      EXPECT_TRUE(stippled([&] { before(mode, count), polygon(); }) == expected) << mode << ", " << count;
+}
+
+TEST(Stipple, GoesOnAfterHiddenEdgesOfAnyNumber) {
+  const auto polygon = [](int hidden) {
+    glBegin(GL_POLYGON), glVertex2f(-0.9f, -0.9f), glVertex2f(0.9f, -0.9f), glEdgeFlag(0);
+    for (int i = 0; i < hidden; ++i) glVertex2f(0.9f, -0.1f);
+    glEdgeFlag(1), glVertex2f(0.9f, -0.1f), glVertex2f(-0.9f, -0.1f), glEnd();
+  };
+  const std::vector<GLubyte> expected = stippled([&] { polygon(0); });
+  for (const int hidden : {1, 2040, 2050, 10000}) EXPECT_TRUE(stippled([&] { polygon(hidden); }) == expected) << hidden;
 }
 
 }  // namespace

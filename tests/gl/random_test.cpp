@@ -390,20 +390,25 @@ TEST(LongPrimitives, GoOnWithTheirStipple) {
   s.viewport = s.scissor = {0, 0, 90, 70};
   s.stipple = true, s.stipple_pattern = 0x0F35, s.stipple_factor = 2;
   s.polygon_modes = {GL_LINE, GL_LINE};
-  for (const GLenum mode : {GL_LINE_STRIP, GL_LINE_LOOP, GL_POLYGON}) {
-    CallStream stream{90, 70};
-    for (const int count : {10000, 30}) {  // the second stipple begins anew
-      Command c{s, ~0u, 0, mode};
-      for (int i = 0; i < count; ++i) {
-        const double angle = 6.28 * i / count, size = count / 12000.0;
-        c.vertices.push_back({{float(size * std::cos(angle)), float(size * std::sin(angle)), 0, 1}, {1, 1, 1, 1}, {}});
+  for (const char* const threads : {"1", "3"})
+    for (const GLenum mode : {GL_LINE_STRIP, GL_LINE_LOOP, GL_POLYGON}) {
+      setenv("FRONTMOST_GL_THREADS", threads, 1);
+      CallStream stream{90, 70};
+      // The second stipple begins anew, in the batch where the first one ends. Fifteen batches are more than wait.
+      for (const int count : {mode == GL_LINE_STRIP ? 60000 : 10000, 30}) {
+        Command c{s, count > 30 ? ~0u : 0, 0, mode};
+        for (int i = 0; i < count; ++i) {
+          const double angle = 6.28 * i / count, size = count > 30 ? 0.8 : 0.2;
+          c.vertices.push_back(
+              {{float(size * std::cos(angle)), float(size * std::sin(angle)), 0, 1}, {1, 1, 1, 1}, {}});
+        }
+        stream.commands.push_back(std::move(c));
       }
-      stream.commands.push_back(std::move(c));
+      int doubtful = 0, deep = 0;
+      EXPECT_EQ(compare(stream, drawn(stream), doubtful, deep), "") << "mode " << mode << ", threads " << threads;
+      EXPECT_EQ(doubtful, 0);
     }
-    int doubtful = 0, deep = 0;
-    EXPECT_EQ(compare(stream, drawn(stream), doubtful, deep), "") << "mode " << mode;
-    EXPECT_EQ(doubtful, 0);
-  }
+  unsetenv("FRONTMOST_GL_THREADS");
 }
 
 TEST(RandomStreams, DoNotDependOnThreadsOrInstructionSets) {

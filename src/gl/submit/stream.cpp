@@ -179,7 +179,7 @@ void PrimitiveStream::carry_on(DrawInput& input) {
   name_primitives(name.draw, name.primitive);
   first_ = 0;
   is_continued_ |= has_drawn;
-  open_->is_continued = is_continued_;
+  open_->is_continued = is_continued_ && mode_ == GL_POLYGON;
   set_limit();
 }
 

@@ -158,7 +158,7 @@ class PrimitiveStream {
   Buffer<std::uint32_t> color_before_, depth_before_;  // planes of the frame before kept_ was drawn
   bool keeps_ = false;
   std::uint32_t next_id_ = 0, next_draw_ = 0;
-  std::uint32_t stipple_pixels_ = 0;  // of the last strip that draw_all() drew
+  std::uint32_t stipple_pixels_ = 0;  // of a strip with which the next batch may go on
   int count_ = 0, limit_ = 0;         // vertices of the open batch
   // The primitive between begin() and end().
   GLenum mode_ = GL_POINTS;

@@ -171,6 +171,7 @@ void Batch::place_polygons(Isa isa) {
   const DrawState& d = *state;
   const PolygonState& polygon = d.state.polygon;
   lines.clear();
+  goes_on_ = false;
   if (d.culls_all || d.viewport.is_empty()) return;
   std::vector<std::uint32_t> apart;
   const bool are_filled = polygon.mode[0] == GL_FILL && polygon.mode[1] == GL_FILL;
@@ -183,9 +184,10 @@ void Batch::place_polygons(Isa isa) {
   auto is_part_of_last = [&, range = draws.begin()](std::uint32_t t) mutable {
     while (std::next(range) != draws.end() && std::next(range)->first <= int(t)) ++range;
     const int part = int(t) - range->first;
-    if (t == 0) return is_continued && range->unit == 0;
+    if (t == 0) return is_continued;
     return t == outlined + 1 && (range->unit == 0 ? part > 0 : part % range->unit > 0);
   };
+  std::uint32_t continues = 0;  // whether the next line's stipple does
   for (const std::uint32_t t : apart) {
     const int vertices[3] = {corners[0][t], corners[1][t], corners[2][t]};
     if ((out_codes()[vertices[0]] & out_codes()[vertices[1]] & out_codes()[vertices[2]]) != 0) continue;
@@ -215,7 +217,7 @@ void Batch::place_polygons(Isa isa) {
     const double shift = outline_offset(*this, rest, is_clockwise, mode);
     // The stipple goes on around a quad or polygon, of which this triangle may be a part. The first one of a quad has
     // the edges to its first vertex and from it, in this order.
-    std::uint32_t continues = is_part_of_last(t) ? 1 : 0;
+    continues = is_part_of_last(t) && (t == 0 || continues != 0) ? 1 : 0;
     outlined = t;
     const bool begins_at_last = rest.count == 3 && rest.has_edge[2] && !rest.has_edge[1];
     for (int i = 0; i < rest.count; ++i) {
@@ -226,6 +228,7 @@ void Batch::place_polygons(Isa isa) {
       lines.push_back({{v, next}, provoking[t], is_back, mode == GL_POINT, std::exchange(continues, 1), shift, t});
     }
   }
+  goes_on_ = continues != 0 && int(outlined) == triangle_count - 1;
 }
 
 void Batch::place_lines() {
@@ -296,10 +299,8 @@ void Batch::prepare(Isa isa) {
   }
   line_rect = {0, 0, -1, -1};
   continued_lines_ = 0, begins_anew_ = false, last_pixels_ = 0;
-  const bool is_outlined =
-      kind != Kind::triangles || (!lines.empty() && int(lines.back().number) == triangle_count - 1);
   if (!lines.empty()) place_lines();
-  if (!is_outlined) begins_anew_ = true, last_pixels_ = 0;
+  if (kind == Kind::triangles && !goes_on_) begins_anew_ = true, last_pixels_ = 0;
 }
 
 std::uint32_t Batch::continue_stipple(std::uint32_t pixels) {

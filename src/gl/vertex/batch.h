@@ -101,8 +101,8 @@ class Batch {
   /// Transforms, lights, clips and places everything, and makes the lists by tile.
   void prepare(Isa isa);
   /// The stipple of the lines with which the batch begins goes on after so many pixels of earlier batches. Call it
-  /// once, after prepare(). \returns the pixels of the batch's last strip, with which the stipple goes on in the next
-  /// batch.
+  /// once for each batch, in the order of submission, after prepare(). \returns the pixels after which the next batch
+  /// goes on.
   std::uint32_t continue_stipple(std::uint32_t pixels);
 
   std::shared_ptr<const DrawState> state;
@@ -111,7 +111,7 @@ class Batch {
   std::vector<DrawRange> draws;
   std::uint32_t first_id = 0;                 ///< running number of the first primitive, for Frame::ids
   std::vector<MaterialChange> material_runs;  ///< beside the state's own materials
-  bool is_continued = false;                  ///< the first primitive began in the batch before
+  bool is_continued = false;                  ///< the first triangle goes on with a polygon of the batch before
 
   // Primitives as submitted.
   int triangle_count = 0;
@@ -139,6 +139,7 @@ class Batch {
   // the last strip.
   std::size_t continued_lines_ = 0;
   bool begins_anew_ = false;
+  bool goes_on_ = false;  // the last triangle's polygon is outlined
   std::uint32_t last_pixels_ = 0;
 };
 
