@@ -334,8 +334,8 @@ TEST(Functions, AreFoundByName) {
 }
 
 TEST(Functions, SayToGlewThatThereIsADisplay) {
-  const auto display = reinterpret_cast<void* (*)()>(OSMesaGetProcAddress("glXGetCurrentDisplay"));
-  const auto version = reinterpret_cast<int (*)(void*, int*, int*)>(OSMesaGetProcAddress("glXQueryVersion"));
+  const auto display = reinterpret_cast<const void* (*)()>(OSMesaGetProcAddress("glXGetCurrentDisplay"));
+  const auto version = reinterpret_cast<int (*)(const void*, int*, int*)>(OSMesaGetProcAddress("glXQueryVersion"));
   ASSERT_TRUE(display && version);
   int major = 0, minor = 0;
   EXPECT_TRUE(display() && version(display(), &major, &minor));

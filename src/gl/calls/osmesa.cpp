@@ -263,7 +263,7 @@ FRONTMOST_GL OsmesaFunction glXGetProcAddressARB(const GLubyte* name) {
 }
 FRONTMOST_GL_ALIAS(glXGetProcAddress, glXGetProcAddressARB);
 FRONTMOST_GL const char* glXGetClientString(void*, int) { return nullptr; }
-FRONTMOST_GL int glXQueryVersion(void*, int* major, int* minor) {
+FRONTMOST_GL int glXQueryVersion(const void*, int* major, int* minor) {
   if (major) *major = 1;
   if (minor) *minor = 2;
   return 1;
