@@ -28,7 +28,6 @@ void check_edges(const Settings& settings, const Job& job) {
     return;
   }
   const auto refuse = [](const char* why) { throw UsageError(std::string("--edges: ") + why); };
-  if (settings.run.mpi) refuse("edges need the whole model in one process; leave out --mpi");
   if (settings.run.stream) refuse("edges need the whole model at once; leave out --stream");
   if (settings.view.camera_model != CameraModel::pinhole)
     refuse("edges need a pinhole camera; leave out --camera-model");

@@ -278,7 +278,10 @@ int render(const Settings& settings, const Team& team) {
 }  // namespace
 
 int run_render(const Settings& settings) {
-  return settings.run.mpi ? run_on_ranks(settings, render) : render(settings, {});
+  if (!settings.run.mpi) return render(settings, {});
+  // Before MPI starts, which may not be there.
+  if (settings.output.edges) throw UsageError("--edges: edges need the whole model in one process; leave out --mpi");
+  return run_on_ranks(settings, render);
 }
 
 }  // namespace frontmost::cli
