@@ -23,7 +23,7 @@ export async function openPage(browser, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, acceptDownloads: true, serviceWorkers: "block", ...options });
   const page = await context.newPage();
   const complaints = [];
-  page.on("console", (message) => ["error", "warning"].includes(message.type()) && message.text() !== blocked && complaints.push(`${message.type()}: ${message.text()}`));
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && message.text() !== blocked && complaints.push(`${message.type()}: ${message.text()} (${message.location().url})`));
   page.on("pageerror", (error) => complaints.push(`error: ${error.message}`));
   return { page, complaints, context };
 }

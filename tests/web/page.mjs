@@ -231,6 +231,8 @@ async function tryRedirectingHost() {
 /** After one visit, no page needs a network, not even unvisited ones. */
 async function tryOffline() {
   const { server, address: gone } = await serve(folder), { page, complaints, context } = await openPage(browser, { serviceWorkers: "allow" });
+  let asked = 0; // requests without a whole answer
+  server.on("request", (_, response) => { ++asked; response.on("close", () => --asked); });
   await page.goto(`${gone}index.html?lang=en&scene=cubes`);
   await settled(page);
   const hash = await hashOf(page);
@@ -238,6 +240,7 @@ async function tryOffline() {
     const kept = (await (await caches.open("frontmost")).keys()).map(({ url }) => url), files = await (await fetch("files.json")).json();
     return [...files, "frontmost-threads.mjs", "frontmost-threads.wasm", "frontmost-threads.worker.js"].every((file) => kept.some((url) => url.endsWith(file)));
   }, undefined, patience);
+  while (asked > 0) await page.waitForTimeout(20); // a file asked for again must not break off
   server.close();
   server.closeAllConnections();
   await page.goto(`${gone}index.html?lang=en&scene=cubes`);
