@@ -139,8 +139,9 @@ class Batch {
   // the last strip.
   std::size_t continued_lines_ = 0;
   bool begins_anew_ = false;
-  bool goes_on_ = false;  // the last triangle's polygon is outlined
   std::uint32_t last_pixels_ = 0;
+  bool goes_on_ =
+      false;  // of place_polygons(): the next batch may go on with the outline of the last triangle's polygon
 };
 
 /// Transforms and lights the vertices of a batch.
