@@ -140,8 +140,8 @@ class Batch {
   std::size_t continued_lines_ = 0;
   bool begins_anew_ = false;
   std::uint32_t last_pixels_ = 0;
-  bool goes_on_ =
-      false;  // of place_polygons(): the next batch may go on with the outline of the last triangle's polygon
+  // Of place_polygons(): whether the next batch may go on with the outline of the last triangle's polygon.
+  bool goes_on_ = false;
 };
 
 /// Transforms and lights the vertices of a batch.
