@@ -231,16 +231,21 @@ async function tryRedirectingHost() {
 /** After one visit, no page needs a network, not even unvisited ones. */
 async function tryOffline() {
   const { server, address: gone } = await serve(folder), { page, complaints, context } = await openPage(browser, { serviceWorkers: "allow" });
-  let asked = 0; // requests without a whole answer
-  server.on("request", (_, response) => { ++asked; response.on("close", () => --asked); });
+  // The module takes a second to arrive. Until then the page must not request it again.
+  const [answer] = server.listeners("request"), isModule = (request) => !request.serviceWorker() && request.url().endsWith(".wasm");
+  server.off("request", answer).on("request", (request, response) => setTimeout(() => answer(request, response), request.url.endsWith(".wasm") ? 1000 : 0));
+  let arriving = 0, most = 0;
+  context.on("request", (request) => isModule(request) && (most = Math.max(most, ++arriving)));
+  for (const end of ["requestfinished", "requestfailed"]) context.on(end, (request) => isModule(request) && --arriving);
   await page.goto(`${gone}index.html?lang=en&scene=cubes`);
   await settled(page);
   const hash = await hashOf(page);
-  await page.waitForFunction(async () => {
+  const areKept = () => page.evaluate(async () => {
     const kept = (await (await caches.open("frontmost")).keys()).map(({ url }) => url), files = await (await fetch("files.json")).json();
     return [...files, "frontmost-threads.mjs", "frontmost-threads.wasm", "frontmost-threads.worker.js"].every((file) => kept.some((url) => url.endsWith(file)));
-  }, undefined, patience);
-  while (asked > 0) await page.waitForTimeout(20); // a file asked for again must not break off
+  });
+  while (!(await areKept())) await page.waitForTimeout(50);
+  assert.equal(most, 1, "requests for the module at a time");
   server.close();
   server.closeAllConnections();
   await page.goto(`${gone}index.html?lang=en&scene=cubes`);

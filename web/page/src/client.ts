@@ -5,6 +5,9 @@ import type { Answer, Answered, Asked, Question } from "./answer.ts";
 export class AskError extends Error {}
 
 export class Client {
+  private hasLoaded!: () => void;
+  /** Resolves when the first question is answered, or cannot be: the module's files have arrived by then. */
+  readonly loaded = new Promise<void>((done) => (this.hasLoaded = done));
   private worker = this.start();
   private waiting = new Map<number, { resolve: (answer: Answer) => void; reject: (error: Error) => void }>();
   private next = 1;
@@ -19,6 +22,7 @@ export class Client {
   private take({ id, answer }: Answered): void {
     const one = this.waiting.get(id);
     this.waiting.delete(id);
+    this.hasLoaded();
     if (answer.error) one?.reject(new AskError(answer.error));
     else one?.resolve(answer);
     // After running out of memory or stack the module cannot continue; the next question starts a new one.
@@ -26,6 +30,7 @@ export class Client {
   }
 
   private fail(reason: string): void {
+    this.hasLoaded();
     for (const one of this.waiting.values()) one.reject(new AskError(reason));
     this.waiting.clear();
   }

@@ -78,7 +78,8 @@ export function bar(page: "workbench" | "lessons"): HTMLElement {
 }
 
 /** After one page has been loaded, all pages work without a network. Files loaded before the service worker existed are
- * requested again; the browser answers from its cache. */
+ * requested again; the browser answers from its cache. Call it once the module's files have arrived: Chromium breaks off
+ * one of two simultaneous requests for a file that is too large for its cache in memory. */
 export async function keepForLater(): Promise<void> {
   if (!("serviceWorker" in navigator) || !isSecureContext) return;
   try {

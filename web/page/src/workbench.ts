@@ -366,4 +366,4 @@ addEventListener("themechange", () => request("fine"));
 const first = new URLSearchParams(location.search).get("scene") ?? "gallery";
 scenePicker.value = first;
 void openBuiltin(first);
-keepForLater();
+void client.loaded.then(keepForLater);

@@ -13,6 +13,9 @@ export function client(): Client {
   return (shared ??= new Client());
 }
 
+/** Resolves when the module's files have arrived, if a figure has asked for them. */
+export const moduleLoaded = (): Promise<void> => shared?.loaded ?? Promise.resolve();
+
 /** Shows in a figure why there is no answer. */
 export class Trouble {
   readonly root = element("p", { class: "trouble", role: "alert", hidden: true });

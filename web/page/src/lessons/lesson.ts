@@ -2,6 +2,7 @@
 // The page of one lesson.
 import { bar, element, keepForLater } from "../dom.ts";
 import { say } from "../language.ts";
+import { moduleLoaded } from "./figure.ts";
 import { lessons, type Part } from "./list.ts";
 
 const words = { contents: { en: "All lessons", zh: "全部课程" }, of: { en: "Lesson", zh: "第" } };
@@ -22,4 +23,4 @@ document.title = `Frontmost · ${say(lesson.title)}`;
 document.body.append(bar("lessons"), element("main", { class: "lesson" },
   element("header", {}, element("p", { class: "number-of" }, say({ en: `Lesson ${number + 1}`, zh: `第 ${number + 1} 课` })), element("h1", {}, say(lesson.title)), element("p", { class: "lead" }, say(lesson.lead))),
   ...lesson.parts.map(part), element("nav", { class: "pager" }, link(number - 1, "←"), link(number + 1, "→"))));
-keepForLater();
+void moduleLoaded().then(keepForLater);
