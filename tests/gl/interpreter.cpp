@@ -282,7 +282,8 @@ struct Primitive {
   double band = 0;                       ///< pixels by which rounding may move vertices that a plane makes
   double slope = 0;                      ///< greatest change of a weight from pixel to pixel, out of 1
   double offset = 0;                     ///< steps of depth
-  std::array<Range, kUnits> changes{};   ///< as in Fragment
+  double depth_sum = 0;                 ///< greatest sum of depth's changes across and along the window, where is_whole
+  std::array<Range, kUnits> changes{};  ///< as in Fragment
   std::size_t source = 0;
 
   explicit Primitive(const std::array<Corner, n>& corners)
@@ -319,6 +320,12 @@ struct Primitive {
         most_inverse = std::max(most_inverse, at(linear[kOne], x, y));
     if (!is_whole && most_inverse > 0) least_w = std::max(least_w, 1 / most_inverse);
     if (!is_whole) band = (1.5 + farthest / least_w * 0x1p-22) / 256;
+    // A depth is the sum of a corner's depth and two changes, in floats, each with rounding errors. Where the changes
+    // are greater than four depths, KeyPlane counts as steep, and doubles are summed.
+    for (std::size_t i = 0; i < n && is_whole; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        depth_sum = std::max(depth_sum,
+                             std::abs(linear[kZ].x * (c[i].x - c[j].x)) + std::abs(linear[kZ].y * (c[i].y - c[j].y)));
     const double steepest = has_one_depth ? 0 : std::max(std::abs(linear[kZ].x), std::abs(linear[kZ].y)) * 256;
     for (std::size_t unit = 0; unit < kUnits; ++unit)
       if (s.units[unit].is_on && n == 3) changes[unit] = changes_of(*s.units[unit].image, 3 * unit);
@@ -375,7 +382,8 @@ struct Primitive {
       f.values[k] = wider(limited(v, limits[k]), (high - low) * of_spread + (std::abs(low) + std::abs(high)) * 2e-7);
     }
     const Range z = unit(around([&](double px, double py) { return at(linear[kZ], px, py); }));
-    const double depth_error = is_whole ? 3 : 12 + most / least_w * 4 + std::abs(offset) * 0.1;
+    const double depth_error =
+        is_whole ? 3 + 4 * std::min(depth_sum, 4.0) : 12 + most / least_w * 4 + std::abs(offset) * 0.1;
     f.changes = changes;
     f.depth = has_one_depth ? depth_of(c[0].z, offset) : stored(z * kMostDepth + offset, depth_error, kMostDepth);
     return f;
